@@ -53,8 +53,9 @@ def loads_in_time(run: PreparedRun, states: FloatArray, times: FloatArray) -> Fl
     """Return the loads of all wheel pins at times, shape (times, pins)."""
     found = []
     for at, state in zip(times.tolist(), states.T, strict=True):
-        discs = run.equation.solved(at, state).forces.discs
-        found.append(np.concatenate([disc.pin_load for disc in discs]))
+        contacts = run.equation.solved(at, state).forces.contacts
+        discs, pins = range(contacts.system.discs), contacts.system.pins
+        found.append(np.concatenate([contacts.pin_loads(disc)[0, 0, :pins] for disc in discs]))
     return np.array(found)
 
 

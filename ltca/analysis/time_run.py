@@ -508,7 +508,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     def balanced(crank_angle: FloatArray) -> FloatArray:
         """Balanced without friction, y of each position, shape (positions, m + k)."""
         smooth = replace(model, friction=None)
-        found = solve_at_output(smooth, [warm], crank_angle, at_first, gaps=False)
+        found = solve_at_output(smooth, [warm], crank_angle, at_first)
         places = np.zeros((crank_angle.size, motion.size))
         places[:, : motion.pose.size] = found.pose
         if motion.sun is not None:
@@ -656,17 +656,13 @@ class Recorder:
         if self._teeth is not None and now.teeth is not None:
             teeth += self._teeth.work_to(now.teeth)
         self._teeth = now.teeth
-        discs = now.discs
         taken: dict[str, Any] = {
             "time": time,
             "place": x,
             "rate": rate,
             "input_torque": torque,
             "output_torque": equation.output_torque(time),
-            "pin_load": [disc.pin_load for disc in discs],
-            "roller_load": [disc.outer_load for disc in discs],
-            "hole_load": [disc.hole_load for disc in discs],
-            "bearing_load": [np.abs(disc.push) for disc in discs],
+            **now.loads,
             "works": state[2 * equation.freedoms :],
             "kinetic": equation.kinetic.energy(x, rate),
             "stored": stored,

@@ -345,7 +345,7 @@ def _walk(
     over_turn = np.zeros((each, motion.size, motion.size))
     scale, first = np.outer(lever, lever), 0
     for rows in np.array_split(angle, -(-angle.size // positions_together(drive))):
-        found = solve_at_output(model, [drive], rows, torque, gaps=False)
+        found = solve_at_output(model, [drive], rows, torque)
         turned = motion.turned(rows)
         stiffness = turned.swapaxes(1, 2) @ stiffness_matrices(model, motion, found) @ turned
         np.add.at(over_turn, (first + np.arange(rows.size)) % each, stiffness / turns)

@@ -434,8 +434,7 @@ class Start:
     share : array, shape (positions, n_BR)
         Parts of the total interference that the rollers' contacts on the race take.
     known : KnownPins or None
-        Approaches of the pins of these drives at other poses, by which a model may leave out pins that cannot touch; None
-        where all are asked for.
+        Where the pins were, from which contact parameters are followed.
     inner : Inner or None
         Inner unknowns of the one system of all contacts.
     """
@@ -452,16 +451,9 @@ class Start:
 
     @classmethod
     def onward(cls, response: Response) -> Start:
-        """Return the start for other poses of the same positions: pins that cannot touch may be left out.
-
-        What is left out `ltca.equilibrium.reducer.complete` adds.
-        """
-        return replace(cls.after(response), known=KnownPins.of(response.flank))
-
-    def of_others(self, reach_beyond: FloatArray) -> Start:
-        """Return the start for other drives, whose pins may be deeper in the flank by `reach_beyond`, mm, (positions, pins)."""
-        known = self.known
-        return replace(self, known=None if known is None else replace(known, approach=known.approach + reach_beyond))
+        """Return the start for other poses of the same positions, also of drives nearly alike."""
+        known = KnownPins(point=response.flank.point, turning=response.flank.turning)
+        return replace(cls.after(response), known=known)
 
 
 def split_shifts(

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
@@ -37,27 +37,6 @@ from ltca.mechanics.energy import stored_by_disc, stored_by_pins
 
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DiscForces:
-    """Loads of the contacts of a disc at one instant, N.
-
-    Attributes
-    ----------
-    pin_load, hole_load : array, shape (pairs,)
-        Wheel pins and shaft pins.
-    inner_load, outer_load : array, shape (rollers,)
-        Rollers on the races and in the bores.
-    push : array of complex, shape (cranks,)
-        Force of every crank bearing on the disc.
-    """
-
-    pin_load: FloatArray
-    hole_load: FloatArray
-    inner_load: FloatArray
-    outer_load: FloatArray
-    push: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,14 +67,14 @@ class Instant:
     teeth: TeethForces | None
 
     @property
-    def discs(self) -> tuple[DiscForces, ...]:
-        """Loads of the contacts of each disc."""
-        load, found = self.contacts.corrected_load[0, 0], []
-        for disc, kinds in enumerate(self.contacts.system.of_kind):
-            pins, outer, holes, inner = (load[kind] for kind in kinds)
-            push = self.contacts.pushes(disc)[0]
-            found.append(DiscForces(pin_load=pins, hole_load=holes, inner_load=inner, outer_load=outer, push=push))
-        return tuple(found)
+    def loads(self) -> dict[str, list[FloatArray]]:
+        """Loads of wheel pins, rollers in bores, shaft pins and crank bearings of each disc, N, by their names in results."""
+        load, system = self.contacts.corrected_load[0, 0], self.contacts.system
+        found = {
+            name: [load[kinds[kind]] for kinds in system.of_kind]
+            for kind, name in enumerate(("pin_load", "roller_load", "hole_load"))
+        }
+        return found | {"bearing_load": [np.abs(self.contacts.pushes(disc)[0]) for disc in range(system.discs)]}
 
 
 class ContactForces:
@@ -109,6 +88,11 @@ class ContactForces:
         Coordinates.
     crank_speed : float
         Speed by which friction fades, rad/s.
+
+    Attributes
+    ----------
+    start : ContactStart or None
+        Inner unknowns from which the next call starts; those of contact grids are not of use elsewhere, see `forget_grids`.
     """
 
     def __init__(self, model: Reducer, motion: Motion, crank_speed: float) -> None:
@@ -122,10 +106,9 @@ class ContactForces:
         self._motion, self._speed = motion, abs(crank_speed)
         rubs = motion.drive.friction
         self._drag = 0.0 if rubs is None else rubs.no_load_torque
-        self._springs = _springs(motion)
-        self._sprung = bool(self._springs.any())
+        self._springs = motion.springs
         self._system = ContactSystem(self._model)
-        self._start: Start | None = None
+        self.start: Start | None = None
         self._latest: Linearised | None = None
 
     @property
@@ -138,34 +121,21 @@ class ContactForces:
         """Whether the stored energy is known: of all but contact grids."""
         return all(isinstance(disc, HalfSpaceCompliance | CoupledCompliance) for disc in self._model.discs)
 
-    @property
-    def warm_start(self) -> Start | None:
-        """Inner unknowns from which the next call starts; None for contact grids, see `forget_grids`."""
-        return self._start if self.has_energy else None
-
-    @warm_start.setter
-    def warm_start(self, kept: Start | None) -> None:
-        """Start the next call from these."""
-        self._start = kept
-
     def forget_grids(self) -> None:
         """Let contact grids begin anew: they have as many cells as they need, which no checkpoint keeps."""
         if not self.has_energy:
-            self._start = None
+            self.start = None
             discs: tuple[Any, ...] = self._model.discs
             for disc in discs:
                 disc.forget()
 
     def at(self, x: FloatArray, rate: FloatArray) -> Instant:
         """Return the forces at coordinates and their rates, each of shape (n,)."""
-        motion, size = self._motion, self._motion.size
+        motion = self._motion
         pose, angle = x[: motion.pose.size], x[motion.crank : motion.crank + 1]
-        contacts = self._system.respond(angle, pose[None], self._start, roughly=False, by_crank=True)
-        self._start, self._latest = contacts.onward, contacts
-        if self._sprung:
-            stiffness, force = self._springs.copy(), self._springs @ x
-        else:
-            stiffness, force = np.zeros((size, size)), np.zeros(size)
+        contacts = self._system.respond(angle, pose[None], self.start, roughly=False, by_crank=True)
+        self.start, self._latest = contacts.onward, contacts
+        stiffness, force = self._springs.copy(), self._springs @ x
         # The crank angle stands behind the pose.
         force[: contacts.size] += contacts.force[0]
         stiffness[: contacts.size, : contacts.size] += contacts.tangent[0]
@@ -176,7 +146,9 @@ class ContactForces:
             force[: pose.size] += held[0]
             stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         outside, on_wheel = self._outside(angle, pose)
-        friction = np.zeros(size) if self._friction is None else self._rubbed(self._friction, contacts, rate, on_wheel)
+        friction = (
+            np.zeros(x.size) if self._friction is None else self._rubbed(self._friction, contacts, rate, on_wheel)
+        )
         return Instant(
             force=force, friction=friction, outside=outside, stiffness=stiffness, contacts=contacts, teeth=teeth
         )
@@ -310,11 +282,3 @@ def _slip(contacts: Linearised, disc: int) -> FloatArray:
     if coordinates.wheel_leans:
         slip[:pins, coordinates.wheel_lean_place] -= along[:pins]
     return np.asarray(slip)
-
-
-def _springs(motion: Motion) -> FloatArray:
-    """Stiffness of the carrier's twist, shape (n, n)."""
-    found, carrier = np.zeros((motion.size, motion.size)), motion.drive.carrier
-    if motion.twist is not None and carrier is not None:
-        found[motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
-    return found

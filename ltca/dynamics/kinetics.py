@@ -111,6 +111,14 @@ class Motion:
         return self.pose.size + 1 + bool(self.mesh_compliance)
 
     @property
+    def springs(self) -> FloatArray:
+        """Stiffness of the carrier against its twist, shape (n, n)."""
+        found, carrier = np.zeros((self.size, self.size)), self.drive.carrier
+        if self.twist is not None and carrier is not None:
+            found[self.twist, self.twist] = carrier.stiffness_torsion or 0.0
+        return found
+
+    @property
     def size(self) -> int:
         """Number of coordinates."""
         return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)
@@ -349,17 +357,17 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
     for number, (place, disc) in enumerate(zip(masses.places, masses.of(DISCS), strict=True)):
         own, at = pose.columns(number), np.array([angle])
         start, stands = complex(place.race_centre(np.zeros(1))[0]), complex(place.race_centre(at)[0])
-        middle = complex(disc.centre[0], disc.centre[1]) - start  # from the origin of the disc, which does not turn
+        middle = disc.place - start  # from the origin of the disc, which does not turn
         moves = motion.unit(int(own[X])) + 1j * motion.unit(int(own[Y]))
         turns = motion.unit(int(own[DISC_ROTATION]))
         nominal = complex(place.race_velocity(at)[0]) * crank
         name = f"disc {number}"
         row = _at(motion, stands + middle, moves + nominal + 1j * middle * turns)
-        yield Body(name=name, turns=False, size=_mass(disc), row=row)
-        yield Body(name=name, turns=True, size=disc.about_own_axis or 0.0, row=_turning(motion, turns))
+        yield Body(name=name, turns=False, size=disc.mass, row=row)
+        yield Body(name=name, turns=True, size=disc.about_own_axis, row=_turning(motion, turns))
         yield from _leaning(motion, disc, number)
-        rollers = [solid for solid in masses.of(ROLLERS) if solid.name.endswith(f"of {name}")]
-        mass, centres = sum(map(_mass, rollers)) / place.cranks, place.race_centres(at)[0]
+        rollers = sum(solid.mass for solid in masses.of(ROLLERS) if solid.disc == number)
+        mass, centres = rollers / place.cranks, place.race_centres(at)[0]
         radius = float(np.mean(place.roller_radii))
         orbit, cage = bearing.inner_race_radius + radius, float(place.cage_speed)
         for bearing_number, centre in enumerate(centres.tolist()):
@@ -374,9 +382,9 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
 
 def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
     """Transverse moments of inertia of a disc that leans: points move by z l in the plane and −(x l_x + y l_y) along z."""
-    tensor = disc.inertia
-    if not motion.pose.leans or tensor is None:
+    if not motion.pose.leans:
         return
+    tensor = disc.inertia
     own = motion.pose.columns(number)[motion.pose.lean_place]
     # A lean along x turns the disc about y.
     by_lean = np.array([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
@@ -410,8 +418,7 @@ def _cranks(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]
     drive, given, discs = motion.drive, motion.drive.inertia, motion.pose.discs
     number = drive.crank.number
     if given is not None and (given.crank is not None or given.crank_mass is not None):
-        whole = masses.mass_of(CRANKS)
-        mass, inertia = (whole or 0.0) / (number * discs), (masses.crank_inertia or 0.0) / discs
+        mass, inertia = masses.mass_of(CRANKS) / (number * discs), masses.crank_inertia / discs
         for disc, place in enumerate(masses.places):
             for crank, axis in enumerate(place.crank_axes.tolist()):
                 row = np.zeros(motion.size, dtype=complex)
@@ -422,27 +429,27 @@ def _cranks(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]
                 turns = motion.unit(motion.crank) + _twist_of(motion, disc, crank)
                 yield Body(name=CRANKS, turns=True, size=inertia, row=_turning(motion, turns))
         return
-    eccentrics = [solid for solid in masses.of(CRANKS) if solid.name.startswith("eccentric")]
-    for place_number, solid in enumerate(eccentrics):
-        disc, crank = divmod(place_number, number)
+    for solid in masses.of(CRANKS):
+        disc, crank = solid.disc, solid.crank
+        if disc < 0:
+            yield from _shaft(motion, solid)
+            continue
         centre = complex(masses.places[disc].race_centres(np.array([angle]))[0, crank])
         row = _at(motion, centre, _eccentric_velocity(motion, masses, disc, crank, angle))
-        yield Body(name=CRANKS, turns=False, size=_mass(solid), row=row)
+        yield Body(name=CRANKS, turns=False, size=solid.mass, row=row)
         turns = motion.unit(motion.crank) + _twist_of(motion, disc, crank)
-        yield Body(name=CRANKS, turns=True, size=solid.about_own_axis or 0.0, row=_turning(motion, turns))
-    for solid in masses.of(CRANKS):
-        if solid.name.startswith("shaft"):
-            yield from _shaft(motion, solid, int(solid.name.rpartition(" ")[2]))
+        yield Body(name=CRANKS, turns=True, size=solid.about_own_axis, row=_turning(motion, turns))
 
 
-def _shaft(motion: Motion, solid: Solid, crank: int) -> Iterator[Body]:
+def _shaft(motion: Motion, solid: Solid) -> Iterator[Body]:
     """A piece of a shaft beside its eccentrics, which bends with them."""
-    axis = complex(solid.centre[0], solid.centre[1])
     for height, weight in zip(solid.heights.tolist(), solid.weights.tolist(), strict=True):
-        mass = _mass(solid) * weight / float(solid.weights.sum())
-        yield Body(name=CRANKS, turns=False, size=mass, row=_at(motion, axis, _bent(motion, crank, height)))
+        mass = solid.mass * weight / float(solid.weights.sum())
+        yield Body(
+            name=CRANKS, turns=False, size=mass, row=_at(motion, solid.place, _bent(motion, solid.crank, height))
+        )
     turns = _turning(motion, motion.unit(motion.crank))
-    yield Body(name=CRANKS, turns=True, size=solid.about_own_axis or 0.0, row=turns)
+    yield Body(name=CRANKS, turns=True, size=solid.about_own_axis, row=turns)
 
 
 def _bent(motion: Motion, crank: int, height: float) -> ComplexArray:
@@ -476,16 +483,11 @@ def _members(motion: Motion, masses: DriveMasses) -> Iterator[Body]:
 
 def _together(solids: Sequence[Solid]) -> tuple[float, complex, float]:
     """Mass, t, centre of mass, mm, and moment of inertia about it, t·mm², of parts that are rigid with each other."""
-    mass = sum(map(_mass, solids))
+    mass = sum(solid.mass for solid in solids)
     if not mass:
         return 0.0, 0j, 0.0
-    places = [complex(solid.centre[0], solid.centre[1]) for solid in solids]
-    centre = sum(_mass(solid) * place for solid, place in zip(solids, places, strict=True)) / mass
-    about = [
-        (solid.about_own_axis or 0.0) + _mass(solid) * abs(place - centre) ** 2
-        for solid, place in zip(solids, places, strict=True)
-    ]
-    return mass, centre, sum(about)
+    centre = sum(solid.mass * solid.place for solid in solids) / mass
+    return mass, centre, sum(solid.about(centre) for solid in solids)
 
 
 def _given(motion: Motion) -> Iterator[Body]:
@@ -500,9 +502,3 @@ def _given(motion: Motion) -> Iterator[Body]:
         yield Body(name=name, turns=True, size=INERTIA * (inertia or 0.0), row=np.asarray(turns, dtype=complex))
     mass = TONNE_PER_KG * (given.output_mass or 0.0)
     yield Body(name=OUTPUT, turns=False, size=mass, row=motion.output_moves)
-
-
-def _mass(solid: Solid) -> float:
-    if solid.mass is None:
-        raise AssertionError("densities are known")
-    return solid.mass

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase
-from math import degrees, nan
+from math import degrees, isnan, nan
 
 import numpy as np
 
@@ -31,22 +31,17 @@ def mass_values(drive: Drive) -> dict[str, float]:
         As it was given.
     """
     masses = drive_masses(drive)
-    disc, total, found = masses.of(DISCS)[0], masses.total, masses.unbalance
-    reflected = reflected_inertia(drive, masses)
-    values = dict.fromkeys(NAMES, nan)
-    if disc.mass is not None and disc.about_own_axis is not None:
-        values |= {"disc_mass": disc.mass / TONNE_PER_KG, "disc_inertia": disc.about_own_axis / INERTIA}
-    if total is not None:
-        values["mass"] = total / TONNE_PER_KG
-    if found is not None:
-        static, couple = _left(found)
-        values |= {"static_unbalance": abs(static) / GRAM, "couple_unbalance": abs(couple) / GRAM}
-    if reflected is not None:
-        values |= {
-            "reflected_inertia_input": reflected.at_input / INERTIA,
-            "reflected_inertia_output": reflected.at_output / INERTIA,
-        }
-    return values
+    disc, reflected = masses.of(DISCS)[0], reflected_inertia(drive, masses)
+    static, couple = _left(masses.unbalance)
+    return {
+        "mass": masses.total / TONNE_PER_KG,
+        "disc_mass": disc.mass / TONNE_PER_KG,
+        "disc_inertia": disc.about_own_axis / INERTIA,
+        "static_unbalance": abs(static) / GRAM,
+        "couple_unbalance": abs(couple) / GRAM,
+        "reflected_inertia_input": nan if reflected is None else reflected.at_input / INERTIA,
+        "reflected_inertia_output": nan if reflected is None else reflected.at_output / INERTIA,
+    }
 
 
 def _left(found: Unbalance) -> tuple[complex, complex]:
@@ -55,8 +50,8 @@ def _left(found: Unbalance) -> tuple[complex, complex]:
     reach = float(abs(found.discs) @ abs(found.planes))
     static, couple = found.static, found.couple
     return (
-        static if abs(static) > BALANCED * whole else 0j,
-        couple if abs(couple) > BALANCED * max(reach, whole) else 0j,
+        0j if abs(static) <= BALANCED * whole else static,
+        0j if abs(couple) <= BALANCED * max(reach, whole) else couple,
     )
 
 
@@ -70,47 +65,38 @@ def mass_rows(drive: Drive) -> list[tuple[str, str]]:
     """
     masses = drive_masses(drive)
     given = drive.inertia is not None and drive.inertia.crank_mass is not None
+    cranks = ", given" if given else ", solid eccentrics and shafts"
     rows = [
-        (f"mass of {group}{_of_cranks(given) if group == CRANKS else ''}", _mass_words(masses, group))
+        (f"mass of {group}{cranks if group == CRANKS else ''}", _mass_words(masses, group))
         for group in masses.groups
-        if masses.mass_of(group) is not None
+        if not isnan(masses.mass_of(group))
     ]
-    disc = masses.of(DISCS)[0]
-    if disc.about_own_axis is not None and disc.mass is not None:
-        of = " 0" if len(masses.of(DISCS)) > 1 else ""
+    discs = masses.of(DISCS)
+    disc, of = discs[0], " 0" if len(discs) > 1 else ""
+    if not isnan(disc.mass):
         rows.append((f"volume of disc{of}", f"{disc.volume:.6g} mm³"))
-        off = complex(disc.centre[0], disc.centre[1]) - complex(masses.places[0].race_centre(np.zeros(1))[0])
-        about = f"{disc.about_own_axis / INERTIA:.5g} kg·m²"
-        rows.append(
-            (
-                f"inertia of disc{of} about its centre of mass",
-                about + (f", {abs(off):.4g} mm off" if abs(off) > 1e-9 else ""),
-            )
-        )
-    if (crank := masses.crank_inertia) is not None:
+        off = abs(disc.place - complex(masses.places[0].race_centre(np.zeros(1))[0]))
+        about = f"{disc.about_own_axis / INERTIA:.5g} kg·m²{f', {off:.4g} mm off' if off > 1e-9 else ''}"
+        rows.append((f"inertia of disc{of} about its centre of mass", about))
+    if not isnan(crank := masses.crank_inertia):
         rows.append(("inertia of a crank about its axis", f"{crank / INERTIA:.5g} kg·m²"))
-    if (total := masses.total) is not None:
-        rows.append(("mass of what the file describes", f"{total / TONNE_PER_KG:.5g} kg"))
-    rows += _unbalance_rows(masses) + _inertia_rows(drive)
+    if not isnan(masses.total):
+        rows.append(("mass of what the file describes", f"{masses.total / TONNE_PER_KG:.5g} kg"))
+    rows += _unbalance_rows(masses.unbalance) + _inertia_rows(drive, masses)
     if missing := masses.without_density:
         rows.append(("masses left out, densities not given", ", ".join(missing)))
     return rows
 
 
-def _of_cranks(given: bool) -> str:
-    return ", given" if given else ", solid eccentrics and shafts"
-
-
 def _mass_words(masses: DriveMasses, group: str) -> str:
-    mass, parts = masses.mass_of(group) or 0.0, masses.of(group)
+    mass, parts = masses.mass_of(group), masses.of(group)
     count = masses.drive.crank.number if group == CRANKS else len(parts)
     each = "" if count == 1 else f", {count} of {mass / count / TONNE_PER_KG:.5g} kg"
     return f"{mass / TONNE_PER_KG:.5g} kg{each}"
 
 
-def _unbalance_rows(masses: DriveMasses) -> list[tuple[str, str]]:
-    found = masses.unbalance
-    if found is None:
+def _unbalance_rows(found: Unbalance) -> list[tuple[str, str]]:
+    if np.isnan(found.discs).any():
         return []
     static, couple = _left(found)
     beside = "" if found.eccentrics else ", eccentrics left out"
@@ -129,8 +115,8 @@ def _polar(value: complex, unit: str) -> str:
     return f"{abs(value) / GRAM:.5g} {unit} at {0.0 if angle > 360.0 - 1e-6 else angle:.4g}°"
 
 
-def _inertia_rows(drive: Drive) -> list[tuple[str, str]]:
-    found = reflected_inertia(drive)
+def _inertia_rows(drive: Drive, masses: DriveMasses) -> list[tuple[str, str]]:
+    found = reflected_inertia(drive, masses)
     if found is None:
         return []
     rows = []

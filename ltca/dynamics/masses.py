@@ -17,12 +17,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import isnan, nan
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.materials import Material
-from ltca.drive.parts import Disc, Drive
+from ltca.drive.parts import Disc, Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import has_lead, lead_relief
@@ -49,72 +50,28 @@ DISCS, WHEEL_PINS, SHAFT_PINS, ROLLERS, CRANKS, RING, POSTS = (
 SLEEVES = {WHEEL_PINS: "sleeves of wheel pins", SHAFT_PINS: "sleeves of shaft pins"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
-    """Integrals over a plane section, which add up; z = x + iy.
+def circle_section(radius: float, centre: complex = 0j) -> ComplexArray:
+    """Return the section of a circle, mm, as `section_within`."""
+    size = abs(centre) ** 2 + 0.5 * radius**2
+    return np.asarray(np.pi * radius**2 * np.array([1.0, centre, size, centre * centre]))
 
-    Attributes
-    ----------
-    area : float
-        ∫dA, mm².
-    first : complex
-        ∫z dA, mm³.
-    polar : float
-        ∫|z|² dA, mm⁴.
-    square : complex
-        ∫z² dA, mm⁴.
+
+def section_within(points: ComplexArray, steps: ComplexArray) -> ComplexArray:
+    """Return the section inside a closed curve by its points, mm, and what it goes on by from each, mm.
+
+    It is ∫dA, ∫z dA, ∫|z|² dA and ∫z² dA with z = x + iy, mm² to mm⁴: sections side by side add up, one that is cut out is
+    subtracted.
     """
+    swept = (points.conjugate() * steps).imag
+    powers = np.stack((np.ones_like(points), points, np.abs(points) ** 2, points**2))
+    return np.asarray(powers @ swept / np.array([2.0, 3.0, 4.0, 4.0]))
 
-    area: float
-    first: complex
-    polar: float
-    square: complex
 
-    @classmethod
-    def of_circle(cls, radius: float, centre: complex = 0j) -> Section:
-        """Return the section of a circle, mm."""
-        area = np.pi * radius**2
-        return cls(
-            area=area,
-            first=area * centre,
-            polar=area * (abs(centre) ** 2 + 0.5 * radius**2),
-            square=area * centre * centre,
-        )
-
-    @classmethod
-    def within(cls, points: ComplexArray, steps: ComplexArray) -> Section:
-        """Return the section inside a closed curve by its points, mm, and what it goes on by from each, mm."""
-        swept = (points.conjugate() * steps).imag
-        return cls(
-            area=float(swept.sum() / 2.0),
-            first=complex((points * swept).sum() / 3.0),
-            polar=float((np.abs(points) ** 2 * swept).sum() / 4.0),
-            square=complex((points**2 * swept).sum() / 4.0),
-        )
-
-    def __add__(self, other: Section) -> Section:
-        """Both together."""
-        return Section(
-            area=self.area + other.area,
-            first=self.first + other.first,
-            polar=self.polar + other.polar,
-            square=self.square + other.square,
-        )
-
-    def times(self, factor: float) -> Section:
-        """Return the integrals times a factor; −1 for what is cut out."""
-        return Section(
-            area=factor * self.area, first=factor * self.first, polar=factor * self.polar, square=factor * self.square
-        )
-
-    def moved(self, by: complex) -> Section:
-        """Return the section moved in its plane, mm."""
-        return Section(
-            area=self.area,
-            first=self.first + self.area * by,
-            polar=self.polar + 2.0 * (self.first * by.conjugate()).real + self.area * abs(by) ** 2,
-            square=self.square + 2.0 * self.first * by + self.area * by * by,
-        )
+def moved_section(section: ComplexArray, by: complex) -> ComplexArray:
+    """Return a section moved in its plane, mm."""
+    area, first, polar, square = section
+    polar = polar + 2.0 * (first * by.conjugate()).real + area * abs(by) ** 2
+    return np.array([area, first + area * by, polar, square + 2.0 * first * by + area * by * by])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -129,68 +86,74 @@ class Solid:
         Which parts it is one of: ``discs``, ``wheel pins``, …
     material : str
         Path of its material in a drive file.
-    density : float or None
-        kg/m³; None where the drive does not give it.
+    density : float
+        kg/m³; not a number where the drive does not give it, and so is what follows from it.
     heights : array, shape (n,)
         Places z of the sections, mm.
     weights : array, shape (n,)
         What each section counts for, mm.
-    sections : tuple of Section
-        In the frame of the pin shaft.
+    sections : array of complex, shape (n, 4)
+        As `section_within`, in the frame of the pin shaft.
+    disc, crank : int
+        Of a disc, and of a crank, that it belongs to; −1 for none.
     """
 
     name: str
     group: str
     material: str
-    density: float | None
+    density: float
     heights: FloatArray
     weights: FloatArray
-    sections: tuple[Section, ...]
+    sections: ComplexArray
+    disc: int = -1
+    crank: int = -1
 
     @property
     def volume(self) -> float:
         """Volume, mm³."""
-        return float(self.weights @ [section.area for section in self.sections])
+        return float(self.weights @ self.sections[:, 0].real)
 
     @property
-    def mass(self) -> float | None:
-        """Mass, t; None without a density."""
-        return None if self.density is None else DENSITY * self.density * self.volume
+    def mass(self) -> float:
+        """Mass, t."""
+        return DENSITY * self.density * self.volume
+
+    @property
+    def place(self) -> complex:
+        """Centre of mass in the plane, mm."""
+        return complex(self.weights @ self.sections[:, 1]) / self.volume
 
     @property
     def centre(self) -> FloatArray:
         """Centre of mass, mm, shape (3,)."""
-        first = complex(self.weights @ [section.first for section in self.sections])
-        z = float((self.weights * self.heights) @ [section.area for section in self.sections])
-        return np.array([first.real, first.imag, z]) / self.volume
+        z = float((self.weights * self.heights) @ self.sections[:, 0].real) / self.volume
+        return np.array([self.place.real, self.place.imag, z])
 
     @property
     def volume_moments(self) -> FloatArray:
         """∫ (r²·1 − r rᵀ) dV about the centre, mm⁵, shape (3, 3)."""
         w, z = self.weights, self.heights
-        area, first, polar, square = (
-            np.array([getattr(section, name) for section in self.sections])
-            for name in ("area", "first", "polar", "square")
-        )
-        second = np.zeros((3, 3))
-        second[0, 0], second[1, 1] = w @ (0.5 * (polar + square.real)), w @ (0.5 * (polar - square.real))
-        second[0, 1] = second[1, 0] = w @ (0.5 * square.imag)
-        second[2, 2] = (w * z * z) @ area
-        second[0, 2] = second[2, 0] = (w * z) @ first.real
-        second[1, 2] = second[2, 1] = (w * z) @ first.imag
+        area, first, polar, square = self.sections.T
+        xx, yy, xy = 0.5 * (polar + square).real, 0.5 * (polar - square).real, 0.5 * square.imag
+        in_plane = [[w @ xx, w @ xy], [w @ xy, w @ yy]]
+        along = (w * z) @ np.stack((first.real, first.imag, z * area.real), axis=1)
+        second = np.block([[np.array(in_plane), along[:2, None]], [along]])
         second -= self.volume * np.outer(self.centre, self.centre)
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
     @property
-    def inertia(self) -> FloatArray | None:
-        """Tensor of inertia about the centre of mass, t·mm², shape (3, 3); None without a density."""
-        return None if self.density is None else DENSITY * self.density * self.volume_moments
+    def inertia(self) -> FloatArray:
+        """Tensor of inertia about the centre of mass, t·mm², shape (3, 3)."""
+        return DENSITY * self.density * self.volume_moments
 
     @property
-    def about_own_axis(self) -> float | None:
-        """Moment of inertia about the line along z through the centre of mass, t·mm²; None without a density."""
-        found = self.inertia
-        return None if found is None else float(found[2, 2])
+    def about_own_axis(self) -> float:
+        """Moment of inertia about the line along z through the centre of mass, t·mm²."""
+        return float(self.inertia[2, 2])
+
+    def about(self, place: complex) -> float:
+        """Return the moment of inertia about a line along z through a place, mm, in t·mm²."""
+        return self.about_own_axis + self.mass * abs(self.place - place) ** 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,7 +163,8 @@ class Unbalance:
     Attributes
     ----------
     discs : array of complex, shape (discs,)
-        Mass times eccentricity of each disc with its eccentrics and rollers, along and ahead of the crank, t·mm.
+        Mass times eccentricity of each disc with its eccentrics and rollers, along and ahead of the crank, t·mm; not a number
+        where the density of discs or rollers is not known.
     planes : array, shape (discs,)
         Their axial places, mm.
     eccentrics : bool
@@ -251,40 +215,29 @@ class DriveMasses:
         """Fields of the densities that the drive does not give, those of cranks only where they are not given otherwise."""
         given = self.drive.inertia
         known = given is not None and given.crank is not None and given.crank_mass is not None
-        missing = [s for s in self.solids if s.density is None and not (known and s.group == CRANKS)]
+        missing = [s for s in self.solids if isnan(s.density) and not (known and s.group == CRANKS)]
         return tuple(dict.fromkeys(f"{solid.material}.density" for solid in missing))
 
-    def mass_of(self, group: str) -> float | None:
-        """Return the mass of all parts of a group, t; None where a density is not known. Of cranks the given one counts."""
+    def mass_of(self, group: str) -> float:
+        """Return the mass of all parts of a group, t; not a number without a density. Of cranks the given one counts."""
         given = self.drive.inertia
         if group == CRANKS and given is not None and given.crank_mass is not None:
             return self.drive.crank.number * TONNE_PER_KG * given.crank_mass
-        masses = [solid.mass for solid in self.of(group)]
-        known = [mass for mass in masses if mass is not None]
-        return sum(known) if len(known) == len(masses) else None
+        return sum(solid.mass for solid in self.of(group))
 
     @property
-    def total(self) -> float | None:
-        """Mass of all parts, t; None where one is not known."""
-        masses = [self.mass_of(group) for group in self.groups]
-        known = [mass for mass in masses if mass is not None]
-        return sum(known) if len(known) == len(masses) else None
+    def total(self) -> float:
+        """Mass of all parts, t."""
+        return sum(self.mass_of(group) for group in self.groups)
 
     @property
-    def crank_inertia(self) -> float | None:
-        """Moment of inertia of one crank about its own axis, t·mm²; None where it is not known."""
-        given = self.drive.inertia
+    def crank_inertia(self) -> float:
+        """Moment of inertia of one crank about its own axis, t·mm²."""
+        given, axis = self.drive.inertia, complex(self.places[0].crank_axes[0])
         if given is not None and given.crank is not None:
             return INERTIA * given.crank
-        axis, total = complex(self.places[0].crank_axes[0]), 0.0
-        for solid in self.of(CRANKS):
-            mass, own = solid.mass, solid.about_own_axis
-            if mass is None or own is None:
-                return None
-            # Cranks are alike but for errors of micrometres: the first stands for all.
-            if solid.name.endswith("crank 0"):
-                total += own + mass * abs(complex(solid.centre[0], solid.centre[1]) - axis) ** 2
-        return total
+        # Cranks are alike but for errors of micrometres: the first stands for all.
+        return sum(solid.about(axis) for solid in self.of(CRANKS) if solid.crank == 0)
 
     @cached_property
     def places(self) -> tuple[Placement, ...]:
@@ -292,25 +245,17 @@ class DriveMasses:
         return tuple(Placement.of_drive(single) for single in single_discs(self.drive))
 
     @property
-    def unbalance(self) -> Unbalance | None:
-        """Unbalance of discs, rollers and eccentrics; None where the density of discs or rollers is not known."""
-        found, eccentrics = [], True
-        for number, place in enumerate(self.places):
-            arms = place.eccentricity * np.exp(1j * place.eccentric_phase)
-            disc, rollers = self.of(DISCS)[number].mass, 0.0
-            if disc is None:
-                return None
-            for solid in self.of(ROLLERS):
-                if solid.name.endswith(f"of disc {number}"):
-                    if solid.mass is None:
-                        return None
-                    rollers += solid.mass
-            own = [solid.mass for solid in self.of(CRANKS) if solid.name.startswith(f"eccentric {number} ")]
-            eccentrics = eccentrics and None not in own
-            on_cranks = sum(mass or 0.0 for mass in own) if None not in own else 0.0
-            found.append((disc + rollers + on_cranks) * complex(arms.mean()))
-        planes = np.array(self.drive.disc.disc_planes, dtype=float)
-        return Unbalance(discs=np.array(found), planes=planes, eccentrics=eccentrics)
+    def unbalance(self) -> Unbalance:
+        """Unbalance of discs, rollers and eccentrics."""
+        arms = [(place.eccentricity * np.exp(1j * place.eccentric_phase)).mean() for place in self.places]
+
+        def by_disc(group: str) -> FloatArray:
+            """Masses at each disc."""
+            return np.array([sum(s.mass for s in self.of(group) if s.disc == disc) for disc in range(len(arms))])
+
+        on_cranks, planes = by_disc(CRANKS), np.array(self.drive.disc.disc_planes, dtype=float)
+        found = (by_disc(DISCS) + by_disc(ROLLERS) + np.nan_to_num(on_cranks)) * np.array(arms)
+        return Unbalance(discs=found, planes=planes, eccentrics=not np.isnan(on_cranks).any())
 
 
 def drive_masses(drive: Drive) -> DriveMasses:
@@ -331,7 +276,7 @@ def drive_masses(drive: Drive) -> DriveMasses:
     --------
     >>> from ltca.reading.drive_file import load_drive
     >>> masses = drive_masses(load_drive("robot-joint").cases["nominal"])
-    >>> [f"{group}: {1e3 * (masses.mass_of(group) or 0.0):.4f} kg" for group in masses.groups[:2]]
+    >>> [f"{group}: {1e3 * masses.mass_of(group):.4f} kg" for group in masses.groups[:2]]
     ['discs: 1.2665 kg', 'wheel pins: 0.1288 kg']
     """
     drive = replace(drive, temperature=None)
@@ -339,7 +284,7 @@ def drive_masses(drive: Drive) -> DriveMasses:
     return DriveMasses(drive=drive, solids=solids)
 
 
-def flank_section(profile: FlankProfile, inward: float = 0.0) -> Section:
+def flank_section(profile: FlankProfile, inward: float = 0.0) -> ComplexArray:
     """Return the section inside a flank that is moved into the material along its normal, in the frame of the disc.
 
     Parameters
@@ -354,39 +299,34 @@ def flank_section(profile: FlankProfile, inward: float = 0.0) -> Section:
     parameter = 2.0 * np.pi * np.arange(count) / count
     points = profile.flank(parameter) - inward * profile.normal(parameter)
     steps = profile.flank_tangent(parameter) * (1.0 - inward * profile.curvature(parameter)) * (2.0 * np.pi / count)
-    return Section.within(np.asarray(points), np.asarray(steps))
+    return section_within(np.asarray(points), np.asarray(steps))
 
 
 def _discs(drive: Drive) -> Iterator[Solid]:
     for number, single in enumerate(single_discs(drive)):
         place, profile, disc = Placement.of_drive(single), FlankProfile.of_drive(single), single.disc
-        cut = [Section.of_circle(single.bore_radius, centre) for centre in place.bore_centres.tolist()]
-        holes = zip(place.hole_radii.tolist(), place.hole_centres.tolist(), strict=True)
-        cut += [Section.of_circle(radius, centre) for radius, centre in holes]
+        radii = [*place.hole_radii.tolist(), *[single.bore_radius] * place.cranks]
+        centres = [*place.hole_centres.tolist(), *place.bore_centres.tolist()]
+        cut = sum(circle_section(radius, centre) for radius, centre in zip(radii, centres, strict=True))
         (plane,), stands = disc.disc_planes, complex(place.race_centre(np.zeros(1))[0])
         heights, weights = _across(disc)
-        sections = []
-        for short in _shorts(disc, heights):
-            section = flank_section(profile, short)
-            for circle in cut:
-                section = section + circle.times(-1.0)
-            sections.append(section.moved(stands))
-        if len(sections) == 1:
-            sections *= heights.size
+        # Of a flank that is straight along its width one section is that of all heights.
+        shorts = lead_relief(disc, heights) if has_lead(disc) else np.zeros(1)
+        each = [moved_section(flank_section(profile, short) - cut, stands) for short in shorts.tolist()]
         yield Solid(
             name=f"disc {number}",
             group=DISCS,
             material="materials.disc",
-            density=drive.materials.disc.density,
+            density=_density(drive.materials.disc),
             heights=plane + heights,
             weights=weights,
-            sections=tuple(sections),
+            sections=np.broadcast_to(np.array(each), (heights.size, 4)),
+            disc=number,
         )
 
 
-def _shorts(disc: Disc, heights: FloatArray) -> list[float]:
-    """By how much the flank falls short at heights above the middle of the disc, mm; one value where it is straight."""
-    return np.asarray(lead_relief(disc, heights)).tolist() if has_lead(disc) else [0.0]
+def _density(material: Material) -> float:
+    return nan if material.density is None else material.density
 
 
 def _across(disc: Disc) -> tuple[FloatArray, FloatArray]:
@@ -404,9 +344,10 @@ def _gauss(ends: Sequence[float]) -> tuple[FloatArray, FloatArray]:
 
 
 def _cylinder(
-    name: str, group: str, material: str, density: float | None, section: Section, low: float, high: float
+    name: str, group: str, material: str, density: float, section: ComplexArray, ends: tuple[float, float], **of: int
 ) -> Solid:
-    heights, weights = _gauss([low, high])
+    """A part with one section; `of` are its disc and crank."""
+    heights, weights = _gauss(ends)
     return Solid(
         name=name,
         group=group,
@@ -414,7 +355,8 @@ def _cylinder(
         density=density,
         heights=heights,
         weights=weights,
-        sections=(section,) * heights.size,
+        sections=np.tile(section, (heights.size, 1)),
+        **of,
     )
 
 
@@ -431,116 +373,102 @@ def _in_the_middle(drive: Drive) -> Placement:
 
 def _pins(drive: Drive) -> Iterator[Solid]:
     """Pins and sleeves of wheel and shaft, the ring of the wheel, posts of the carrier."""
-    place, wheel, shaft, stack, materials = (
-        _in_the_middle(drive),
-        drive.pin_wheel,
-        drive.pin_shaft,
-        _stack(drive),
-        drive.materials,
-    )
-    half = 0.5 * drive.wheel_pin_span
-    low, high = stack if wheel.beam is None else (-half, half)
-    held = wheel.seat.pin_radius if wheel.seat.kind == "sleeve" else None
-    centres = (place.wheel_pin_centres + place.wheel_axis).tolist()
-    yield from _on_circle(
-        WHEEL_PINS, "wheel_pin", materials.wheel_pin, centres, place.wheel_pin_radii, held, (low, high)
-    )
-    if wheel.seat.kind == "sleeve":
-        bore = wheel.seat.bore_radius or 0.0
-        yield from _sleeves(WHEEL_PINS, materials.sleeve, centres, place.wheel_pin_radii, bore, stack)
+    place, shaft, materials = _in_the_middle(drive), drive.pin_shaft, drive.materials
+    axis = complex(place.wheel_axis)
+    centres, radii = place.wheel_pin_centres + axis, place.wheel_pin_radii
+    yield from _with_sleeves(drive, WHEEL_PINS, drive.pin_wheel, drive.wheel_pin_span, centres, radii)
     if drive.ring is not None:
-        ring, axis = drive.ring, complex(place.wheel_axis)
-        inner = Section.of_circle(ring.inner_radius, axis).times(-1.0)
-        section = Section.of_circle(ring.outer_radius, axis) + inner
-        ends = -0.5 * ring.width, 0.5 * ring.width
-        yield _cylinder(RING, RING, "ring.material", ring.material.density, section, *ends)
+        ring = drive.ring
+        section = circle_section(ring.outer_radius, axis) - circle_section(ring.inner_radius, axis)
+        yield _cylinder(RING, RING, "ring.material", _density(ring.material), section, _about_middle(ring.width))
     if shaft is not None:
-        half = 0.5 * drive.shaft_pin_span
-        low, high = stack if shaft.beam is None else (-half, half)
-        held = shaft.seat.pin_radius if shaft.seat.kind == "sleeve" else None
-        centres, radii = place.shaft_pin_centres.tolist(), place.shaft_pin_radii
-        yield from _on_circle(SHAFT_PINS, "shaft_pin", materials.shaft_pin, centres, radii, held, (low, high))
-        if shaft.seat.kind == "sleeve":
-            yield from _sleeves(SHAFT_PINS, materials.sleeve, centres, radii, shaft.seat.bore_radius or 0.0, stack)
+        centres, radii = place.shaft_pin_centres, place.shaft_pin_radii
+        yield from _with_sleeves(drive, SHAFT_PINS, shaft, drive.shaft_pin_span, centres, radii)
     if (posts := drive.posts) is not None:
-        half, number = 0.5 * drive.post_length, drive.crank.number
-        beside = drive.crank.angle + np.pi / number if shaft is None else np.pi / shaft.number_of_pins
+        beside = drive.crank.angle + np.pi / drive.crank.number if shaft is None else np.pi / shaft.number_of_pins
         around = posts.radius * np.exp(1j * (beside + 2.0 * np.pi * np.arange(posts.number) / posts.number))
         radii = np.full(posts.number, 0.5 * posts.size)
-        yield from _on_circle(POSTS, "carrier", materials.carrier, around.tolist(), radii, None, (-half, half))
+        yield from _on_circle(POSTS, "carrier", materials.carrier, around, radii, _about_middle(drive.post_length))
+
+
+def _about_middle(length: float) -> tuple[float, float]:
+    return -0.5 * length, 0.5 * length
+
+
+def _with_sleeves(
+    drive: Drive, group: str, pins: PinWheel | PinShaft, span: float, centres: ComplexArray, radii: FloatArray
+) -> Iterator[Solid]:
+    """Pins of wheel or shaft, then the sleeves on them; `radii` are those at the flank or the holes."""
+    stack, seat, part = _stack(drive), pins.seat, group.removesuffix("s").replace(" ", "_")
+    sleeves = seat.kind == "sleeve"
+    own = np.full_like(radii, seat.pin_radius) if sleeves and seat.pin_radius is not None else radii
+    ends = stack if pins.beam is None else _about_middle(span)
+    yield from _on_circle(group, part, getattr(drive.materials, part), centres, own, ends)
+    if sleeves:
+        bore = seat.bore_radius or 0.0
+        yield from _on_circle(SLEEVES[group], "sleeve", drive.materials.sleeve, centres, radii, stack, bore)
 
 
 def _on_circle(
     group: str,
     part: str,
     material: Material,
-    centres: Sequence[complex],
+    centres: ComplexArray,
     radii: FloatArray,
-    held: float | None,
     ends: tuple[float, float],
+    bore: float = 0.0,
 ) -> Iterator[Solid]:
-    """Round parts that stand about an axis; `held` is their radius where a sleeve is on them."""
-    for number, (centre, radius) in enumerate(zip(centres, radii.tolist(), strict=True)):
-        section = Section.of_circle(radius if held is None else held, centre)
-        name = f"{group.removesuffix('s')} {number}"
-        yield _cylinder(name, group, f"materials.{part}", material.density, section, *ends)
-
-
-def _sleeves(
-    pins: str,
-    material: Material,
-    centres: Sequence[complex],
-    radii: FloatArray,
-    bore: float,
-    ends: tuple[float, float],
-) -> Iterator[Solid]:
-    for number, (centre, radius) in enumerate(zip(centres, radii.tolist(), strict=True)):
-        section = Section.of_circle(radius, centre) + Section.of_circle(bore, centre).times(-1.0)
-        name = f"sleeve of {pins.removesuffix('s')} {number}"
-        yield _cylinder(name, SLEEVES[pins], "materials.sleeve", material.density, section, *ends)
+    """Round parts that stand about an axis, with a bore of some radius."""
+    name, density = group.replace("sleeves", "sleeve").removesuffix("s"), _density(material)
+    for number, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
+        section = circle_section(radius, centre) - circle_section(bore, centre)
+        yield _cylinder(f"{name} {number}", group, f"materials.{part}", density, section, ends)
 
 
 def _rollers(drive: Drive) -> Iterator[Solid]:
     """Rollers on their inner races at crank angle 0."""
+    density = _density(drive.materials.roller)
     for number, single in enumerate(single_discs(drive)):
-        place, (plane,), half = Placement.of_drive(single), single.disc.disc_planes, 0.5 * single.roller_length
+        place, ends = Placement.of_drive(single), _of_rollers(single)
         races, radii = place.race_centres(np.zeros(1))[0], place.roller_radii
         rays = place.roller_rays(np.zeros(1))[0]
         centres = races[place.roller_cranks] + (single.crank_bearing.inner_race_radius + radii) * rays
         for roller, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
-            section = Section.of_circle(radius, centre)
-            name, density = f"roller {roller} of disc {number}", drive.materials.roller.density
-            yield _cylinder(name, ROLLERS, "materials.roller", density, section, plane - half, plane + half)
+            name, section = f"roller {roller} of disc {number}", circle_section(radius, centre)
+            yield _cylinder(name, ROLLERS, "materials.roller", density, section, ends, disc=number)
 
 
-def crank_density(drive: Drive) -> tuple[str, float | None]:
-    """Return the path of the material of the eccentrics and its density, kg/m³: of the crankshaft, or of the inner races, where
-    it has none.
-    """
-    own, race = drive.materials.crankshaft.density, drive.materials.inner_race.density
-    return ("materials.crankshaft", own) if own is not None else ("materials.inner_race", race)
+def _of_rollers(single: Drive) -> tuple[float, float]:
+    """Ends of the rollers of one disc, mm."""
+    (plane,), half = single.disc.disc_planes, 0.5 * single.roller_length
+    return plane - half, plane + half
 
 
 def _cranks(drive: Drive) -> Iterator[Solid]:
-    """Eccentrics as wide as the rollers, and the shaft between its bearings beside them; both solid."""
-    material, density = crank_density(drive)
-    taken, radius = [], drive.crank_bearing.inner_race_radius
-    axes: list[complex] = []
-    for number, single in enumerate(single_discs(drive)):
-        place, (plane,), half = Placement.of_drive(single), single.disc.disc_planes, 0.5 * single.roller_length
-        taken.append((plane - half, plane + half))
+    """Eccentrics as wide as the rollers, and the shaft between its bearings beside them; both solid.
+
+    They are of the material of the crankshaft, or of that of the inner races where it has no density.
+    """
+    named = "crankshaft" if drive.materials.crankshaft.density is not None else "inner_race"
+    material, density = f"materials.{named}", _density(getattr(drive.materials, named))
+    taken, axes = list[tuple[float, float]](), list[complex]()
+    for disc, single in enumerate(single_discs(drive)):
+        place, ends = Placement.of_drive(single), _of_rollers(single)
+        taken.append(ends)
         axes = place.crank_axes.tolist()
         for crank, centre in enumerate(place.race_centres(np.zeros(1))[0].tolist()):
-            section = Section.of_circle(radius, centre)
-            name = f"eccentric {number} of crank {crank}"
-            yield _cylinder(name, CRANKS, material, density, section, plane - half, plane + half)
+            section, name = (
+                circle_section(single.crank_bearing.inner_race_radius, centre),
+                f"eccentric {disc} of crank {crank}",
+            )
+            yield _cylinder(name, CRANKS, material, density, section, ends, disc=disc, crank=crank)
     support = drive.crank.support
     if support is None:
         return
-    for piece, (low, high) in enumerate(_beside(support.positions, sorted(taken))):
+    for piece, ends in enumerate(_beside(support.positions, sorted(taken))):
         for crank, axis in enumerate(axes):
-            section = Section.of_circle(0.5 * support.diameter, axis)
-            yield _cylinder(f"shaft {piece} of crank {crank}", CRANKS, material, density, section, low, high)
+            section, name = circle_section(0.5 * support.diameter, axis), f"shaft {piece} of crank {crank}"
+            yield _cylinder(name, CRANKS, material, density, section, ends, crank=crank)
 
 
 def _beside(whole: tuple[float, float], taken: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float]]:

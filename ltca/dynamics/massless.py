@@ -48,23 +48,16 @@ class MasslessParts:
         Where they begin, mm.
     rubs : bool
         Whether friction or forces from outside act on them.
+
+    Attributes
+    ----------
+    warm_start : tuple
+        Places, slopes, coordinates of the others and rates of the last call, from which the next one starts.
     """
 
     def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:
         self.columns, self.rubs = columns, rubs
-        self._place, self._slope = place.copy(), np.zeros((columns.shape[1], columns.shape[0]))
-        self._others: FloatArray | None = None
-        self._following = np.zeros(columns.shape[1])
-
-    @property
-    def warm_start(self) -> tuple[FloatArray | None, ...]:
-        """Places, slopes, coordinates of the others and rates of the last call, from which the next one starts."""
-        return self._place, self._slope, self._others, self._following
-
-    @warm_start.setter
-    def warm_start(self, kept: tuple[Any, ...]) -> None:
-        """Start the next call from these."""
-        self._place, self._slope, self._others, self._following = kept
+        self.warm_start: tuple[Any, ...] = place.copy(), np.zeros(columns.shape[::-1]), None, np.zeros(columns.shape[1])
 
     def settle(
         self, others: FloatArray, rate: FloatArray, respond: Respond
@@ -84,11 +77,13 @@ class MasslessParts:
             Where they find no balance.
         """
         columns = self.columns
-        place = self._place if self._others is None else self._place + self._slope @ (others - self._others)
+        place, slope, before_others, before_rates = self.warm_start
+        if before_others is not None:
+            place = place + slope @ (others - before_others)
         fastest = float(np.abs(rate).max())
         onward = ONWARD / fastest if self.rubs and fastest > 0.0 else 0.0
         # Last rates are those of a hair before: what K misses of the slope of f, friction above all, counts for their change.
-        following = self._following if onward else self._slope @ rate
+        following = before_rates if onward else slope @ rate
         moving = rate + columns @ following
 
         def left_over(now: Instant, outer: FloatArray) -> FloatArray:
@@ -109,15 +104,15 @@ class MasslessParts:
             changes = (pressed, left[:, None]) if ahead is None else (pressed, left[:, None], ahead[:, None])
             solved = np.asarray(np.linalg.solve(pressed @ columns, np.hstack(changes)), dtype=float)
             count = columns.shape[0]
-            self._slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
+            slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
             if ahead is not None:
                 following, ahead = following + (step - solved[:, count + 1]) / onward, None
             elif not onward:
-                following = self._slope @ rate
+                following = slope @ rate
             moving, place = rate + columns @ following, place - step
             history.append(float(np.abs(step).max()))
             if history[-1] <= SETTLED:
-                self._place, self._others, self._following = place, others, following
+                self.warm_start = place, slope, others, following
                 now = replace(now, force=now.force - now.stiffness @ (columns @ step))
-                return others + columns @ place, moving, now, self._slope
+                return others + columns @ place, moving, now, slope
         raise ConvergenceError("parts without mass find no balance in motion; last steps in mm", history)

@@ -109,18 +109,14 @@ class Equation:
 
     def warm_start(self) -> tuple[Any, ...]:
         """Return the inner unknowns from which the next call starts: the last digits of its forces depend on them."""
-        return self.contacts.warm_start, None if self.massless is None else self.massless.warm_start
+        contacts = self.contacts.start if self.contacts.has_energy else None
+        return contacts, None if self.massless is None else self.massless.warm_start
 
     def start_from(self, kept: tuple[Any, ...]) -> None:
         """Start the next call from inner unknowns that `warm_start` returned."""
-        self.contacts.warm_start = kept[0]
+        self.contacts.start = kept[0]
         if self.massless is not None:
             self.massless.warm_start = kept[1]
-
-    def place(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return x and its rate of a state, shape (2m + 4,)."""
-        x, rate, _, _ = self._moment(time, state)
-        return x, rate
 
     def _moment(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray, Instant | None, FloatArray]:
         """x, its rate, the forces where they are known already, and B with what follows its motions."""

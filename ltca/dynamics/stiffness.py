@@ -62,10 +62,7 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
         row = motion.unit(motion.crank) - motion.unit(motion.sun)
         row[:pose_size] += motion.mesh_by_pose
         stiffness += np.outer(row, row) / motion.mesh_compliance
-    carrier = motion.drive.carrier
-    if motion.twist is not None and carrier is not None:
-        stiffness[:, motion.twist, motion.twist] += carrier.stiffness_torsion or 0.0
-    return stiffness
+    return stiffness + motion.springs
 
 
 def crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:

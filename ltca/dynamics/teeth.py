@@ -22,15 +22,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.dynamics.kinetics import Motion
 from ltca.equilibrium.reducer import Reducer
 from ltca.equilibrium.supports import Supports
-from ltca.errors import ConvergenceError
 
-SETTLED, STEPS = 1e-12, 60
-"""Change of the moment of all cranks by itself, or by 1 N·mm, at which bearings and teeth agree; and steps tried."""
+SETTLED = 1e-12
+"""Change of the moment of all cranks by itself, or by 1 N·mm, at which bearings and teeth agree."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,25 +141,13 @@ class Teeth:
             return found, given
 
         total, given = follows(0.0)
-        if self._bears:
-            first, left, history = 0.0, total, []
+        if self._bears and total:
+            # The moment that follows falls as one is assumed: what agrees lies between none and the one that follows from none.
             # Lags of the size of the backlash are known to their round-off, and so is what they press.
             round_off = 8.0 * np.finfo(float).eps * (abs(apart) + self._half_free)
-            known = round_off / min(together for together, *_ in self._together.values())
-            for _ in range(STEPS):
-                found, given = follows(total)
-                change = found - total
-                history.append(abs(change))
-                if abs(change) <= max(SETTLED * max(abs(total), 1.0), known):
-                    break
-                # The secant of what is left over; both fall as the moment grows.
-                slope = (change - left) / (total - first) if total != first else -1.0
-                first, left, total = total, change, total - change / min(slope, -1e-3)
-            else:
-                raise ConvergenceError(
-                    "bearings of the cranks and teeth of the first stage find no balance in motion; changes in N·mm",
-                    history,
-                )
+            known = max(SETTLED, round_off / min(together for together, *_ in self._together.values()))
+            total = float(brentq(lambda moment: follows(moment)[0] - moment, 0.0, total, xtol=known, rtol=SETTLED))
+            given = follows(total)[1]
         return (1.0 if total >= 0.0 else -1.0), total, given, total != 0.0
 
     def _given(self, x: FloatArray, own: FloatArray, total: float) -> ComplexArray | None:

@@ -19,7 +19,7 @@ from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
 from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between
 from ltca.equilibrium.newton import Search
-from ltca.equilibrium.reducer import Reducer, complete
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import turn_to_contact
@@ -117,7 +117,6 @@ def solve_equilibrium(
     wheel_moment: FloatArray | float,
     start: FloatArray | None = None,
     inner: Start | None = None,
-    gaps: bool = True,
     series: int = 1,
     reference: FloatArray | float = 0.0,
 ) -> Equilibrium:
@@ -135,8 +134,6 @@ def solve_equilibrium(
         Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
     inner : Start, optional
         Inner unknowns near the poses to start from.
-    gaps : bool
-        Whether the pairs of pins that do not touch are wanted, which balance does not need (`FlankMotion.left_out`).
     series : int
         Number of series of equally many positions, one after the other: turns of different drives or under different torques.
     reference : float or array, shape (positions,)
@@ -159,21 +156,18 @@ def solve_equilibrium(
     left = np.zeros(0, dtype=np.intp)
     for rows, begin in _stages(search, start, inner, series):
         left = np.append(left, search.iterate(_most(search), rows, begin))
-    return _completed(search, np.sort(left), gaps)
+    return _completed(search, np.sort(left))
 
 
 def follow_equilibrium(
     model: Reducer,
     found: Equilibrium,
     wheel_moment: FloatArray,
-    gaps: bool = True,
     reference: FloatArray | float = 0.0,
 ) -> Equilibrium:
-    """Balance positions under other moments, N·mm, from what this model answered; `gaps` and `reference` as for
-    `solve_equilibrium`.
-    """
+    """Balance positions under other moments, N·mm, from what this model answered; `reference` as for `solve_equilibrium`."""
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy(), reference)
-    return _completed(search, search.iterate(_most(search), response=found.response), gaps)
+    return _completed(search, search.iterate(_most(search), response=found.response))
 
 
 def _search(
@@ -184,7 +178,7 @@ def _search(
     return Search(model, angle, moment, lever, load, pose)
 
 
-def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibrium:
+def _completed(search: Search, left: NDArray[np.intp]) -> Equilibrium:
     """Balance what Newton's method has left over by other means, and return all positions."""
     model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
@@ -195,12 +189,11 @@ def _completed(search: Search, left: NDArray[np.intp], gaps: bool) -> Equilibriu
         left = _follow_down(search, left)
     if left.size:
         raise _failure(search, left)
-    response = search.contacts()[1]
     return Equilibrium(
         crank_angle=angle,
         wheel_moment=np.array(search.moment),
         pose=search.pose,
-        response=complete(model, angle, search.pose, response) if gaps else response,
+        response=search.contacts()[1],
         residual=search.residual,
         iterations=search.iterations,
     )

@@ -66,7 +66,6 @@ def solve_at_output(
     torque: FloatArray | float,
     start: FloatArray | None = None,
     inner: Start | None = None,
-    gaps: bool = True,
     wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
     """Balance positions at output torques.
@@ -88,8 +87,6 @@ def solve_at_output(
         Poses to start from, first contact by default.
     inner : Start, optional
         Inner unknowns near those poses.
-    gaps : bool
-        As for `ltca.equilibrium.balance.solve_equilibrium`.
     wheel_moment : array, shape (positions,), optional
         Moments on the wheel to start from, N·mm; those of the mean of a turn by default.
 
@@ -106,7 +103,7 @@ def solve_at_output(
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
     if start is None and np.any(loads == 0.0):
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
-        near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light), gaps=False)
+        near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light))
         start, inner = near.pose, Start.after(near.response)
     wanted = _OutputTorque.of_drives(drives, loads)
     friction, moment = model.friction, wanted.mean
@@ -121,10 +118,8 @@ def solve_at_output(
         if friction is not None and strength < 1.0:
             part = replace(model, friction=friction.scaled(strength) if strength else None)
         try:
-            found = solve_equilibrium(
-                part, angle, moment, start, inner, gaps and strength > 0.0, len(drives), wanted.reference
-            )
-            found = wanted.balanced(part, found, gaps=gaps and strength > 0.0)
+            found = solve_equilibrium(part, angle, moment, start, inner, len(drives), wanted.reference)
+            found = wanted.balanced(part, found)
         except ConvergenceError as error:
             if not (rubs and strength):
                 raise
@@ -219,9 +214,7 @@ class _OutputTorque:
             reference=np.where(loads == 0.0, each(lambda drive: drive.load.light_torque), 0.0),
         )
 
-    def balanced(
-        self, model: Reducer, found: Equilibrium, balance: Balance | None = None, *, gaps: bool = True
-    ) -> Equilibrium:
+    def balanced(self, model: Reducer, found: Equilibrium, balance: Balance | None = None) -> Equilibrium:
         """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
 
         Positions are followed by Newton's method, or solved anew by `balance` from poses near by.
@@ -242,7 +235,7 @@ class _OutputTorque:
             moment[rows] += step
             near, own = (found, model) if whole else (take_positions(found, rows), model.take(rows))
             if balance is None:
-                part = follow_equilibrium(own, near, moment[rows], gaps, self.reference[rows])
+                part = follow_equilibrium(own, near, moment[rows], self.reference[rows])
             else:
                 part = balance(near.crank_angle, moment[rows], near.pose)
             part = replace(part, iterations=near.iterations + part.iterations)

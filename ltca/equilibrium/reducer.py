@@ -37,7 +37,6 @@ from ltca.compliance.response import (
     Start,
     bearing_moments,
     bearing_pushes,
-    split_shifts,
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
@@ -370,8 +369,7 @@ class _Evaluated:
     @cached_property
     def start(self) -> Start:
         """Where other poses of the same positions start."""
-        start, approach = self.at.onward, _beside([each.flank.approach for each in self.at.discs])
-        return replace(start, known=None if start.known is None else replace(start.known, approach=approach))
+        return self.at.onward
 
 
 @dataclass(frozen=True, slots=True)
@@ -445,24 +443,6 @@ class Evaluation:
             inner=start.inner,
             contact_stiffness=self.contact_stiffness,
         )
-
-
-def reach_beyond(model: Reducer, other: Reducer) -> FloatArray:
-    """Return how much deeper pins may be than those of another drive at the same places, mm, shape (…, pins of all discs)."""
-    pairs = zip(model.geometries, other.geometries, strict=True)
-    # Discs that scatter have rows by position, others one for all.
-    each = np.broadcast_arrays(*(mine.reach_beyond(theirs) for mine, theirs in pairs))
-    return np.concatenate(each, axis=-1)
-
-
-def complete(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> Response:
-    """Return a response with the gaps and places of the pins that were left out because they cannot touch (`Start.onward`)."""
-    parts = []
-    for number, (disc, part) in enumerate(zip(model.discs, response.parts, strict=True)):
-        geometry, own = disc.geometry, model.coordinates.columns(number)
-        moved, _ = split_shifts(part.shifts, geometry)
-        parts.append(replace(part, flank=geometry.complete_flank(crank_angle, pose[:, own], part.flank, moved)))
-    return replace(response, flank=_beside([part.flank for part in parts]), parts=tuple(parts))
 
 
 def disc_pressures(pressures: ContactPressures, discs: int) -> tuple[ContactPressures, ...]:

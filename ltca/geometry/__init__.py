@@ -11,11 +11,10 @@ flank_deviation    Deviation of the flank from its design along the design norma
 placement          Places and radii of pins, rollers and holes, errors included
 flank              Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1)
 coordinates        The coordinates of a pose and their places: discs, cranks that yield, the wheel, the ring
-pair_motion        Approaches of pairs at a pose, their derivatives, and bounds of approaches at other poses
+pair_motion        Approaches of pairs at a pose, and their derivatives by the pose
 pairs              Approach of each pair at a pose and its derivatives by the pose (Eq. 45–64)
 interference       Overlap of the parts as drawn, before any body yields: it preloads a drive without external load
-first_contact      Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry
-                   (Eq. 2–6)
+first_contact      Tooth contact analysis without load: first contact, backlash, interference
 play               Free play of the wheel with all clearances together, crank held, discs floating
 separation         True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65)
 =================  ============================================================

@@ -1,4 +1,4 @@
-"""Tooth contact analysis without load: backlash, unloaded transmission error, pairs that can carry (Eq. 2–6).
+"""Tooth contact analysis without load: first contact, backlash, interference.
 
 The disc is held on the nominal eccentricity without rotation, as bearing and pin holes without clearance hold it, and with
 contacts in slices square to its crank; what is left is the backlash between flank and pins, which touch where along their
@@ -13,14 +13,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, FloatArray, take_rows
+from ltca.arrays import BoolArray, FloatArray
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import RIGID, WHEEL_ANGLE, Coordinates
 from ltca.geometry.length_profile import ACROSS
 from ltca.geometry.pairs import ContactGeometry
 
-LEAST_LEVER = 1e-3
-"""Lever arm of a pin's contact normal, by e u, from which Newton's method is used to find where the pin touches."""
 TOUCHING = 1e-12
 """Interference that counts as touching, by the pin circle radius: some thousand times the round-off."""
 ROUND_OFF = 1e-15
@@ -62,57 +60,21 @@ def first_contact(
     Where pins press on the flank at every rotation, because of errors of single parts or an interference fit, the result is the
     rotation of least `interference` in both senses, so that backlash is zero.
     """
-    rotation, pin, settled, history = turn_to_contact(geometry, crank_angle, coordinate, sense)
+    rotation, pin, settled = turn_to_contact(geometry, crank_angle, coordinate, sense)
     if not np.all(settled):
-        raise ConvergenceError(
-            "no pin touches the flank within half a pitch, the disc in its nominal place; last rotations in rad",
-            history,
-        )
+        raise ConvergenceError("no pin touches the flank within half a pitch, the disc in its nominal place")
     return rotation, pin
 
 
 def turn_to_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
-) -> tuple[FloatArray, NDArray[np.intp], BoolArray, list[float]]:
-    """Return rotation and pin as `first_contact` does, whether contact was found, and the largest rotation of each iteration.
-
-    Rotations are in rad, zero where no contact was found.
-    """
+) -> tuple[FloatArray, NDArray[np.intp], BoolArray]:
+    """Return rotation and pin as `first_contact` does, and whether contact was found; rotations are zero where it was not."""
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    pose = np.zeros((angle.size, 4))
-    lever = geometry.placement.mean_eccentricity * geometry.placement.reduction_ratio
-    history: list[float] = []
-    settled = np.zeros(angle.size, dtype=bool)
-    pin = np.zeros(angle.size, dtype=np.intp)
-    for _ in range(MAX_ITERATIONS):
-        approach, slope = _approaches(geometry, angle, coordinate, pose[:, coordinate])
-        rate = sense * slope
-        closing = rate > LEAST_LEVER * lever
-        travel = np.where(closing, -approach / np.where(closing, rate, 1.0), np.inf)
-        pin = np.argmin(travel, axis=1)
-        step = np.take_along_axis(travel, pin[:, None], axis=1)[:, 0]
-        reachable = np.isfinite(step)
-        step = np.where(reachable, step, 0.0)
-        pose[:, coordinate] += sense * step
-        settled = reachable & (np.abs(step) < 1e-14)
-        history.append(float(np.max(np.abs(step))))
-        if np.all(settled | ~reachable):
-            break
-    # Pins whose normal nearly passes through the axis, left out above, are looked for by bisection.
-    others = np.max(approach, axis=1) > TOUCHING * _size(geometry)  # where it settled, at that pose
-    unsure = np.nonzero(~settled | others)[0]
-    if unsure.size:
-        part = take_rows(geometry, unsure)
-        bottom, pressed = _least_interference(part, angle[unsure], coordinate)
-        rotation, touching, stopped = _farthest_free(part, angle[unsure], coordinate, sense, bottom)
-        free = pressed <= TOUCHING * _size(part)
-        rotation = np.where(free, rotation, bottom)
-        # If pins overlap at every rotation, Newton's method above has followed the steepest of them away.
-        better = stopped | ~free
-        rows = unsure[better]
-        pose[rows, coordinate], pin[rows], settled[rows] = rotation[better], touching[better], True
-    pose[~settled, coordinate] = 0.0
-    return pose[:, coordinate], pin, settled, history
+    bottom, pressed = _least_interference(geometry, angle, coordinate)
+    rotation, pin, stops = _farthest_free(geometry, angle, coordinate, sense, bottom)
+    free = pressed <= TOUCHING * _size(geometry)
+    return np.where(free, np.where(stops, rotation, 0.0), bottom), pin, stops | ~free
 
 
 def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
@@ -208,10 +170,13 @@ def _farthest_free(
     stops, place = largest > level, outside
     for _ in range(MAX_ITERATIONS):
         newton = place - (largest - level) / np.where(slope == 0.0, np.nan, slope)
-        following = np.where((newton - inside) * (newton - outside) < 0.0, newton, 0.5 * (inside + outside))
-        if np.all(np.abs(following - place) < ROUND_OFF):
+        within = sense * (newton - inside) > -ROUND_OFF
+        within &= sense * (newton - outside) < ROUND_OFF
+        following = np.where(within, newton, 0.5 * (inside + outside))
+        moves = np.abs(following - place) >= ROUND_OFF
+        if not np.any(moves & stops):
             break
-        place = following
+        place = np.where(moves, following, place)
         largest, slope, pin = _largest_approach(geometry, angle, coordinate, place)
         over = largest > level
         inside, outside = np.where(over, inside, place), np.where(over, place, outside)
@@ -229,53 +194,3 @@ def backlash(
     forward = np.min([first_contact(disc, crank_angle, coordinate, 1)[0] for disc in discs], axis=0)
     backward = np.max([first_contact(disc, crank_angle, coordinate, -1)[0] for disc in discs], axis=0)
     return np.asarray(forward - backward)
-
-
-def unloaded_transmission_error(
-    geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, driving_sign: int = 1
-) -> FloatArray:
-    """Return the wheel angle without load and without clearances, from geometry alone (Eq. 6), rad, shape (positions,).
-
-    The angle at first contact: negative when a crank driving counter-clockwise (`driving_sign` = +1) takes up the backlash.
-    With several discs on one wheel `geometry` has each of them.
-    """
-    discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
-    turned = [first_contact(disc, crank_angle, WHEEL_ANGLE, -driving_sign)[0] for disc in discs]
-    # The sense of the load is −driving_sign: the first disc that touches stops the wheel.
-    return np.asarray(-driving_sign * np.min([-driving_sign * each for each in turned], axis=0))
-
-
-def carrying_pins(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
-    """Return which wheel pins can drive the wheel against its load, shape (positions, z_P).
-
-    A pin carries when pressing it on the flank turns the wheel in the driving sense: the lever of its contact
-    normal about the wheel axis has that sign.
-    """
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    motion = geometry.flank(angle, np.zeros((angle.size, 4)))
-    return np.asarray(driving_sign * motion.gradient[..., WHEEL_ANGLE] < 0.0)
-
-
-def carrying_holes(geometry: ContactGeometry, crank_angle: FloatArray, driving_sign: int = 1) -> BoolArray:
-    """Return which pin holes can hold the disc against rotation (Eq. 2–4), shape (positions, z_PS).
-
-    The product of n = (−sin θ, cos θ) at the hole and the direction from disc centre to crank axis is positive.
-    """
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    hole = np.angle(geometry.placement.hole_centres)
-    return np.asarray(driving_sign * np.sin(hole - angle[:, None]) > 0.0)
-
-
-def carrying_rollers(
-    geometry: ContactGeometry,
-    crank_angle: FloatArray,
-    load_direction: FloatArray,
-    loaded_zone: float = 0.5 * np.pi,
-) -> BoolArray:
-    """Return which rollers lie within ± `loaded_zone` (θ_predict, rad) of a direction (Eq. 5), shape (positions, n_BR).
-
-    `load_direction` is the direction of the bearing force on the disc, θ_F, rad, shape (positions,).
-    """
-    rollers = geometry.placement.roller_angles(np.atleast_1d(np.asarray(crank_angle, dtype=float)))
-    away = rollers - np.atleast_1d(np.asarray(load_direction, dtype=float))[:, None]
-    return np.asarray(np.cos(away) >= np.cos(loaded_zone))

@@ -159,10 +159,6 @@ class FlankProfile:
             deviation=ProfileDeviation.of_errors(drive.disc.profile_errors),
         )
 
-    def of_points(self, rows: NDArray[np.intp] | BoolArray) -> FlankProfile:
-        """Return the flanks of points that belong to these positions: itself for one drive."""
-        return take_rows(self, rows)
-
     def locus(self, parameter: FloatArray) -> CurvePoints:
         """Return the design trochoid about its centre at θ, rad, and its first two derivatives by θ.
 
@@ -347,7 +343,7 @@ class FlankProfile:
                 left = left[going.ravel()]
                 if left.size == 0:
                     return NearestPoint(every, self.contact_curve(settled))
-                flank = flank.of_points(np.nonzero(going)[0])
+                flank = take_rows(flank, np.nonzero(going)[0])
                 theta, direction, point, last, slope_before = _picked(
                     going, theta, direction, point, last, slope_before
                 )
@@ -364,11 +360,6 @@ class FlankProfile:
         return CurvePoints(
             point - step * (tangent - half * second), tangent - step * second + half * change, second - change
         )
-
-    @property
-    def has_cusps(self) -> BoolArray:
-        """Whether the path of a pin centre is so sharp at the root that a point may have a nearest one on either side."""
-        return np.asarray(self.eccentricity * self.reduction_ratio**2 > self.generating_radius)
 
     def nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
         """Return the nearest points, on the other side of the root where the flank is nearer there.
@@ -401,7 +392,7 @@ class FlankProfile:
             return found
         # The doubtful points alone; of a batch of flanks the positions that have some.
         rows = np.nonzero(np.any(doubtful, axis=1))[0] if has_rows(self) else doubtful
-        flank = self.of_points(rows)
+        flank = take_rows(self, rows)
         point, start = point[rows], np.where(doubtful, 2.0 * root - theta, theta)[rows]
         other = flank._settle(point, start)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])

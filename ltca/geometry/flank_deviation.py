@@ -55,13 +55,6 @@ class ProfileDeviation:
             orders=errors.orders, amplitudes=np.asarray(cosine - 1j * sine, dtype=complex), knots=knots, pieces=pieces
         )
 
-    @property
-    def bound(self) -> FloatArray:
-        """Upper bound of |δ|, mm, shape () or (positions, 1)."""
-        waves = np.abs(self.amplitudes).sum(axis=-1, keepdims=self.amplitudes.ndim > 1)
-        spans = np.diff(self.knots) ** np.arange(3, -1, -1)[:, None]
-        return np.asarray(waves + (np.abs(self.pieces) * spans).sum(axis=0).max(initial=0.0))
-
     def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return δ, δ′ and δ″ at e^{iθ}, mm by powers of rad, shape (…) or (positions, …).
 

@@ -1,4 +1,4 @@
-"""Approaches of pairs at a pose, their derivatives by the pose, and bounds of approaches at other poses.
+"""Approaches of pairs at a pose, and their derivatives by the pose.
 
 All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
 together.
@@ -10,11 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ltca.arrays import BoolArray, ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
-
-MARGIN = 1e-6
-"""Gap below which a pin is never left out, mm: far above the round-off of places, far below any play."""
 
 
 def dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -159,16 +156,12 @@ class FlankMotion(PairMotion):
         Centre of the pin in the frame of the disc, mm.
     turning : array of complex, shape (positions, z_P)
         Change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
-    left_out : array of bool, shape (positions, z_P)
-        Pins that cannot touch and were left out: approach and point are those of another pose, where the pair was open as
-        well, and derivatives are zero.
     """
 
     parameter: FloatArray
     effective_radius: FloatArray
     point: ComplexArray
     turning: ComplexArray
-    left_out: BoolArray
 
     def _bent_by(self, across: FloatArray) -> FloatArray:
         """As for holes, of pins on the flank."""
@@ -196,30 +189,16 @@ class FlankMotion(PairMotion):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownPins:
-    """Approaches of wheel pins and flank at some pose, from which those at other poses are bounded.
+    """Where wheel pins are at some pose, from which their contact parameters at others are guessed.
 
     Attributes
     ----------
-    approach, point, turning : array, shape (positions, z_P)
+    point, turning : array, shape (positions, z_P)
         Of `FlankMotion` there.
     """
 
-    approach: FloatArray
     point: ComplexArray
     turning: ComplexArray
-
-    @classmethod
-    def of(cls, motion: FlankMotion) -> KnownPins:
-        """Return the pins of pairs of pins and flank."""
-        return cls(approach=motion.approach, point=motion.point, turning=motion.turning)
-
-    def may_touch(self, point: ComplexArray) -> BoolArray:
-        """Return which pins may touch the flank, from their centres in the frame of the disc, mm, shape (positions, z_P).
-
-        A distance changes by no more than the displacement of the point from which it is measured.
-        """
-        room, moved = -MARGIN - self.approach, point - self.point
-        return np.asarray((room < 0.0) | (moved.real**2 + moved.imag**2 > room * room))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -279,14 +258,10 @@ class RollerRays:
     outermost: FloatArray
     bore_play: FloatArray
 
-    def touching_distance(self, displacement: ComplexArray) -> FloatArray:
+    def touching(self, displaced: ComplexArray) -> FloatArray:
         """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
 
-        `displacement` is the bore centre from the inner-race centre, mm, shape (positions, rollers) or (positions, 1).
+        `displaced` is the bore centre from the inner-race centre, along and across each ray, mm.
         """
-        return self.touching(self.direction.conjugate() * displacement)
-
-    def touching(self, displaced: ComplexArray) -> FloatArray:
-        """Return the same from displacements along and across each ray."""
         # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
         return np.asarray(displaced.real + np.sqrt(np.maximum(self.bore_play**2 - displaced.imag**2, 0.0)))

@@ -7,13 +7,12 @@ together.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive
+from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -34,43 +33,6 @@ from ltca.geometry.rotation import unit
 MAX_EXTRAPOLATION = 0.1
 """Largest change of θ by which a first guess is extrapolated, rad, times the tooth number."""
 _RIGID_MEMBERS = Coordinates()
-TOGETHER = 256
-"""Pins of all positions up to which those that may touch anyway are found at once."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Pins:
-    """Wheel pins relative to the disc, complex numbers of one shape, mm.
-
-    Attributes
-    ----------
-    centre, arm : array of complex
-        Centre from the axis of the wheel and from the centre of the disc, in the fixed frame.
-    turn : array of complex
-        Unit vector of the disc's rotation.
-    point : array of complex
-        Centre in the frame of the disc.
-    radius, reach : array
-        Of the pin, and less its play.
-    """
-
-    centre: ComplexArray
-    arm: ComplexArray
-    turn: ComplexArray
-    point: ComplexArray
-    radius: FloatArray
-    reach: FloatArray
-
-    def take(self, places: NDArray[np.intp], rows: NDArray[np.intp]) -> _Pins:
-        """Return some pins, counted through all positions, and their positions; shape (pins, 1)."""
-        return _Pins(
-            centre=self.centre.take(places)[:, None],
-            arm=self.arm.take(places)[:, None],
-            turn=self.turn[rows],
-            point=self.point.take(places)[:, None],
-            radius=np.broadcast_to(self.radius, self.point.shape).take(places)[:, None],
-            reach=np.broadcast_to(self.reach, self.point.shape).take(places)[:, None],
-        )
 
 
 class DiscPlace(NamedTuple):
@@ -262,126 +224,22 @@ class ContactGeometry:
         shifts : array of complex, shape (positions, z_P), optional
             Displacements of the pins in the turning wheel, mm.
         known : KnownPins, optional
-            Of the same drives: pins that cannot touch the flank are left out, see `complete_flank`.
+            Where the pins were at the first guess, which is followed from there.
         at : DiscPlace, optional
             Where the disc stands, if it is known.
         """
-        pins = self._pins(crank_angle, pose, shifts, at)
-        coordinates = self.coordinates_of(pose)
-        if start is not None and known is not None and start.size <= TOGETHER and np.isinf(known.approach).all():
-            turned = dot(known.turning, pins.point - known.point)
-            near = np.abs(turned).max(initial=0.0) <= MAX_EXTRAPOLATION / abs(self.profile.reduction_ratio)
-            start, known = start + turned if near else None, None
-        if start is None:
-            start = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        if known is None:
-            return self._touching(self.profile, pins, start, coordinates)
-        return self._touching_some(pins, start, known.may_touch(pins.point), known, coordinates)
-
-    def complete_flank(
-        self, crank_angle: FloatArray, pose: FloatArray, motion: FlankMotion, shifts: ComplexArray | None = None
-    ) -> FlankMotion:
-        """Return pairs of which `flank` left some pins out with these computed as well; arguments as for `flank`."""
-        if not motion.left_out.any():
-            return motion
-        pins = self._pins(crank_angle, pose, shifts)
-        others = self._touching_some(
-            pins, motion.parameter, motion.left_out, KnownPins.of(motion), self.coordinates_of(pose)
-        )
-        mixed = {}
-        for item in fields(motion):
-            mine, theirs = getattr(motion, item.name), getattr(others, item.name)
-            chosen = motion.left_out.reshape(*motion.left_out.shape, *(1,) * (mine.ndim - 2))
-            mixed[item.name] = np.where(chosen, theirs, mine)
-        return FlankMotion(**mixed | {"left_out": np.zeros_like(motion.left_out)})
-
-    def reach_beyond(self, other: ContactGeometry) -> FloatArray:
-        """Return a bound of how much deeper a pin is in the flank than that of another drive at the same place, mm.
-
-        It is the difference of the radii plus a bound of the distance between the flanks: by their centres, generating circles,
-        offsets, turns and deviations. The other drive has as many pins, or is a batch of as many positions; shape (z_P,) or
-        (positions, z_P).
-        """
-        mine, theirs = self.profile, other.profile
-        apart = np.abs(np.asarray(mine.centre - theirs.centre)) + np.abs(mine.offset - theirs.offset)
-        apart = apart + np.abs(mine.generating_radius - theirs.generating_radius)
-        apart = apart + np.abs(mine.eccentricity - theirs.eccentricity)
-        apart = apart + np.abs(mine.turn - theirs.turn) * (theirs.generating_radius + theirs.eccentricity)
-        for deviation in (mine.deviation, theirs.deviation):
-            if deviation is not None:
-                apart = apart + deviation.bound
-        return np.asarray(self._pin_reaches - other._pin_reaches + apart)
-
-    @property
-    def _pin_reaches(self) -> FloatArray:
-        """Distance from the nominal centre of a wheel pin to where it touches: its radius less the play in its seat, mm."""
-        return self.placement.wheel_pin_radii - self.placement.wheel_pin_plays
-
-    def _pins(
-        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, at: DiscPlace | None = None
-    ) -> _Pins:
-        """Wheel pins in the fixed frame and in that of the disc (Eq. 49, 60, 62–63)."""
-        place, coordinates = self.placement, self.coordinates_of(pose)
+        place, coordinates, profile = self.placement, self.coordinates_of(pose), self.profile
         disc = at or self.disc_place(crank_angle, pose)
-        disc_centre = disc.centre
-        if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
-            wheel = coordinates.wheel_place
-            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
-        if coordinates.wheel_leans:
-            disc_centre = disc_centre - self.plane * self.wheel_lean(pose)
-        turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
-        centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
-        pin = centres * unit(turned)
-        arm = place.wheel_axis + pin - disc_centre
-        return _Pins(
-            centre=pin,
-            arm=arm,
-            turn=disc.turn,
-            point=arm * disc.turn.conjugate(),
-            radius=place.wheel_pin_radii,
-            reach=self._pin_reaches,
-        )
-
-    def _touching_some(
-        self, pins: _Pins, start: FloatArray, near: BoolArray, known: KnownPins, coordinates: Coordinates
-    ) -> FlankMotion:
-        """Pairs of the pins that are near, computed as positions of one pin, among those of the pins known from another pose."""
-        places = np.flatnonzero(near)
-        rows = places // near.shape[1]
-        chosen, most = pins.take(places, rows), MAX_EXTRAPOLATION / self.profile.reduction_ratio
-        turned = dot(known.turning.take(places), chosen.point[:, 0] - known.point.take(places)).clip(-most, most)
-        found = self._touching(
-            self.profile.of_points(rows), chosen, (start.take(places) + turned)[:, None], coordinates
-        )
-        approach, parameter = known.approach.copy(), start.copy()
-        point, turning = known.point.copy(), known.turning.copy()
-        bending = np.zeros(near.shape)
-        # Pins left out get some radius that the flank has: laws of profiled pins refuse others.
-        if places.size:
-            effective_radius = np.full(near.shape, found.effective_radius[0, 0])
-        else:
-            effective_radius = self.profile.effective_radius(start, self.placement.wheel_pin_radii)
-        gradient, along = (np.zeros((*near.shape, coordinates.size)) for _ in range(2))
-        motion = FlankMotion(
-            approach=approach,
-            gradient=gradient,
-            along=along,
-            bending=bending,
-            parameter=parameter,
-            effective_radius=effective_radius,
-            point=point,
-            turning=turning,
-            left_out=~near,
-        )
-        for item in fields(found):
-            if item.name != "left_out":
-                values = getattr(motion, item.name)
-                values.reshape(near.size, *values.shape[2:])[places] = getattr(found, item.name)[:, 0]
-        return motion
-
-    def _touching(self, profile: FlankProfile, pins: _Pins, start: FloatArray, coordinates: Coordinates) -> FlankMotion:
-        """Pairs of pins and flank, all of the same shape."""
-        point, arm = pins.point, pins.arm
+        centre, arm = self._pins(crank_angle, pose, shifts, disc)
+        point = arm * disc.turn.conjugate()
+        nominal = self.nominal_parameter(crank_angle) + pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
+        if start is None:
+            start = nominal
+        elif known is not None:
+            turned = dot(known.turning, point - known.point)
+            # Where a pin has gone far nothing that was known there is of use.
+            near = np.abs(turned).max(axis=1, keepdims=True) <= MAX_EXTRAPOLATION / abs(profile.reduction_ratio)
+            start = np.where(near, start + turned, nominal)
         parameter, curve = profile.nearest_point(point, start)
         tangent = curve.tangent
         square = tangent.real**2 + tangent.imag**2
@@ -395,10 +253,10 @@ class ContactGeometry:
 
         # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
-        outward = normal * pins.turn
+        outward = normal * disc.turn
         gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
         inward = outward.conjugate()
-        by_disc, by_wheel = arm * inward, pins.centre * inward  # scalar and, negative, vector products
+        by_disc, by_wheel = arm * inward, centre * inward  # scalar and, negative, vector products
         gradient[..., X], gradient[..., Y] = outward.real, outward.imag
         gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = -by_disc.imag, by_wheel.imag
         along[..., X], along[..., Y] = outward.imag, -outward.real
@@ -411,16 +269,31 @@ class ContactGeometry:
             gradient[..., lean] = -plane * gradient[..., DISC_PLACE]
             along[..., lean] = -plane * along[..., DISC_PLACE]
         return FlankMotion(
-            approach=pins.reach - offset - distance,
+            approach=place.wheel_pin_radii - place.wheel_pin_plays - offset - distance,
             gradient=gradient,
             along=along,
             bending=curvature / spread,
             parameter=parameter,
-            effective_radius=1.0 / (1.0 / pins.radius + flank_curvature),
+            effective_radius=1.0 / (1.0 / place.wheel_pin_radii + flank_curvature),
             point=point,
             turning=tangent / (square * spread),
-            left_out=np.zeros(point.shape, dtype=bool),
         )
+
+    def _pins(
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None, disc: DiscPlace
+    ) -> tuple[ComplexArray, ComplexArray]:
+        """Centres of the wheel pins from the axis of the wheel and from that of the disc, fixed frame (Eq. 49, 60, 62–63)."""
+        place, coordinates = self.placement, self.coordinates_of(pose)
+        disc_centre = disc.centre
+        if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
+            wheel = coordinates.wheel_place
+            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
+        if coordinates.wheel_leans:
+            disc_centre = disc_centre - self.plane * self.wheel_lean(pose)
+        turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
+        centres = place.wheel_pin_centres if shifts is None else place.wheel_pin_centres + shifts
+        pin = centres * unit(turned)
+        return pin, place.wheel_axis + pin - disc_centre
 
     def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
         """Return where the disc stands (Eq. 46); arguments as for `flank`."""

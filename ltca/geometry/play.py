@@ -33,11 +33,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, FloatArray, stack_drives, take_positions, take_rows
+from ltca.arrays import BoolArray, FloatArray, stack_drives, take_rows
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates
 from ltca.geometry.length_profile import ACROSS
-from ltca.geometry.pair_motion import KnownPins, PairTilt
+from ltca.geometry.pair_motion import PairTilt
 from ltca.geometry.pairs import ContactGeometry
 
 Rows = NDArray[np.intp]
@@ -47,8 +47,8 @@ CLOSED = 1e-9
 """Overlap treated as none, mm: a thousandth of the least clearance that counts as one."""
 RELIEF = 2e-11
 """Overlap that is always allowed, mm, so that parts without any clearance have a feasible pose."""
-LEAST_GAIN = 1e-7
-"""Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-5 arcmin."""
+LEAST_GAIN = 1e-9
+"""Displacement of the wheel at e z_P, mm, that a programme must promise to be followed: some 1e-7 arcmin."""
 PENALTY = 1e6
 """Cost of overlap relative to displacement of the wheel: wedges of arcs gain some thousand mm per mm of overlap."""
 STRAIGHT = 1e-12
@@ -65,12 +65,8 @@ SHRINK_AFTER = 12
 """Programmes after which steps are shortened."""
 MAX_PIVOTS = 400
 """Pivots of one programme of four unknowns; of more in proportion."""
-LEAST_PIVOT = 1e-8
-"""Least pivot of a programme of many unknowns: unit normals beside unit normals."""
-LOST = 1e-30
-"""Determinant of the unit normals of a corner of many unknowns below which it is none."""
-KEPT_INVERSE = 20
-"""Pivots of a programme of many unknowns for which the inverse of its basis is updated."""
+LEAST_PIVOT = 1e-9
+"""Least pivot of a programme: unit normals beside unit normals."""
 KEPT_PROGRAMMES = 8
 """Number of last programmes of which the tangents of arcs are kept."""
 DEGENERATE = 1e-9
@@ -255,7 +251,7 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
     # Discs may each be free without any angle common to all.
-    preloaded |= (backward - forward) * np.maximum.reduce([_reach(disc) for disc in discs]) > LEAST_GAIN
+    preloaded |= (backward - forward) * np.maximum.reduce([_reach(disc) for disc in discs]) > 100.0 * LEAST_GAIN
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
@@ -361,8 +357,7 @@ class _Programme:
         smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
         self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
         self.pitch, self.size = np.pi / place.reduction_ratio, RIGID + 2 * leans
-        motion = geometry.flank(angle, np.zeros((angle.size, RIGID)))
-        self.known, self.parameter = KnownPins.of(motion), motion.parameter
+        self.parameter = geometry.flank(angle, np.zeros((angle.size, RIGID))).parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Exact gaps of all pairs with the room, mm, their derivatives by scaled coordinates, and the number of arcs, which
@@ -382,9 +377,7 @@ class _Programme:
         moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
-        # A pin that is open in the middle may touch at its end: none is left out where discs lean.
-        known = None if self.heights else take_positions(self.known, rows)
-        flank = geometry.flank(angle, pose, self.parameter[rows] + turned, known=known)
+        flank = geometry.flank(angle, pose, self.parameter[rows] + turned)
         gaps = [rays.bore_play - length, -holes.approach, -flank.approach]
         slopes = [moved.real, -holes.gradient, -flank.gradient]
         if self.heights:
@@ -643,51 +636,32 @@ def _farthest(
     basis = _as_good_as_first(matrix, objective, first, first if start is None else start + fixed)
     answer, stopping = np.zeros((rows, size + 1)), basis.copy()
     # Rows that have reached their optimum stay in the batch until gathering the others pays.
-    going, whole, pivots, many = np.arange(rows), (matrix, limit), 0, size > RIGID
-    inverse = np.zeros((rows, size + 1, size + 1))
-    most = MAX_PIVOTS * size // RIGID
-    while pivots < most:
+    going = np.arange(rows)
+    for _ in range(MAX_PIVOTS * size // RIGID):
         each = np.arange(going.size)[:, None]
-        fresh = not many or pivots % KEPT_INVERSE == 0
-        if fresh:
-            if many:  # rounding may have led to rows that depend on each other: those start again
-                lost = np.abs(np.linalg.det(matrix[each, basis])) < LOST
-                basis[lost] = first[going[lost]]
-            inverse = np.linalg.inv(matrix[each, basis])
+        inverse = np.linalg.inv(matrix[each, basis])
         point = np.matmul(inverse, limit[each, basis][..., None])
         beyond = np.matmul(matrix, point)[..., 0] - limit
         beyond[each, basis] = 0.0
         entering = np.argmax(beyond, axis=1)
         over = beyond[each[:, 0], entering] > 1e-13
         answer[going], stopping[going] = point[..., 0], basis
-        if not over.any() and fresh:
-            break
         if not over.any():
-            pivots += KEPT_INVERSE - pivots % KEPT_INVERSE
-            continue
+            break
         if over.mean() < GATHER_BELOW:
             going, matrix, limit, objective = going[over], matrix[over], limit[over], objective[over]
             basis, inverse, entering, each = basis[over], inverse[over], entering[over], each[: over.sum()]
             over = over[over]
         price = np.matmul(objective[:, None], inverse)[:, 0]
         share = np.matmul(matrix[each, entering[:, None]], inverse)[:, 0]
-        rises = share > (LEAST_PIVOT if many else 1e-11)
+        rises = share > LEAST_PIVOT
         ratio = np.where(rises, np.maximum(price, 0.0) / np.where(rises, share, 1.0), np.inf)
         leaving, changed = np.argmin(ratio, axis=1)[over], each[over, 0]
         basis[changed, leaving] = entering[over]
-        if many:  # the inverse of a basis with one row replaced
-            along = share[changed]
-            column = inverse[changed, :, leaving] / along[np.arange(changed.size), leaving][:, None]
-            inverse[changed] -= column[:, :, None] * along[:, None, :]
-            inverse[changed, :, leaving] = column
-        pivots += 1
     else:
-        if not many:
-            raise ConvergenceError("a linear programme of the play takes too many pivots", [float(going.size)])
-        stopping[going] = _by_library(objective, matrix, limit)
-    if many:
-        each = np.arange(rows)[:, None]
-        answer = np.linalg.solve(whole[0][each, stopping], whole[1][each, stopping][..., None])[..., 0]
+        stopping[going] = basis = _by_library(objective, matrix, limit)
+        each = np.arange(going.size)[:, None]
+        answer[going] = np.linalg.solve(matrix[each, basis], limit[each, basis][..., None])[..., 0]
     return answer[:, :size], answer[:, size], stopping - fixed
 
 

@@ -178,7 +178,7 @@ class ContactSystem:
         The first group has all positions; those of each further one stand in place of what the groups before have of them.
         """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
-        known = None if start is None or (not by_crank and (self.deforms or self.components > 1)) else start.known
+        known = None if start is None else start.known
         for margin in (np.inf,) if everything else (CANDIDATE_MARGIN, np.inf):
             at = Linearised(self, angle, pose, state, known, roughly=roughly, margin=margin, by_crank=by_crank)
             groups = self._settled(at, state, apart)
@@ -338,11 +338,7 @@ class Linearised:
             first, last = disc * system.pins, (disc + 1) * system.pins
             known = self.known
             if known is not None:
-                known = KnownPins(
-                    approach=known.approach[:, first:last],
-                    point=known.point[:, first:last],
-                    turning=known.turning[:, first:last],
-                )
+                known = KnownPins(point=known.point[:, first:last], turning=known.turning[:, first:last])
             shifts = leans = None
             if state.shifts is not None:
                 shifts = state.shifts[:, disc]
@@ -603,7 +599,6 @@ class Linearised:
             parameter=beside([motion.parameter for motion in motions]),
             share=self.share,
             known=KnownPins(
-                approach=np.full((self.angle.size, self.system.discs * self.system.pins), np.inf),
                 point=beside([motion.point for motion in motions]),
                 turning=beside([motion.turning for motion in motions]),
             ),

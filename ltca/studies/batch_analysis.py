@@ -19,7 +19,7 @@ from ltca.drive.unit_mistakes import explain_failure
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.reducer import Reducer, reach_beyond
+from ltca.equilibrium.reducer import Reducer
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
@@ -137,21 +137,16 @@ class _Batch:
             self.prepared = with_kept_coefficients(settings.engine, drive).prepare(drive)
             self.model = self.prepared.model
 
-    def balance(self, torques: list[float], near: Equilibrium | None, nominal: Reducer | None = None) -> Equilibrium:
-        """Balance the drives at their torques, starting from the solution `near`, if given, of the same rows or of one drive.
-
-        The latter is what the model of another drive answered, the nominal one.
-        """
+    def balance(self, torques: list[float], near: Equilibrium | None) -> Equilibrium:
+        """Balance the drives at their torques, starting from the solution `near`, if given, of the same rows or of one drive."""
         if self.prepared is not None:
             return self.prepared.balance(self.angle, torques[0], None if near is None else near.pose)
         loads = np.repeat(torques, self.positions)
         if near is None:
-            return solve_at_output(self.model, self.drives, self.angle, loads, gaps=False)
+            return solve_at_output(self.model, self.drives, self.angle, loads)
         rows = np.arange(self.angle.size) % near.crank_angle.size
         inner = take_positions(Start.onward(near.response), rows)
-        if nominal is not None:
-            inner = inner.of_others(reach_beyond(self.model, nominal.take(rows)))
-        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner, gaps=False)
+        return solve_at_output(self.model, self.drives, self.angle, loads, near.pose[rows], inner)
 
 
 def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleResults:
@@ -241,14 +236,13 @@ def solve_batch(
     solved = _Batch(drives, settings, models)
     if nominal is not None and not nominal.suits(solved.model):
         nominal = None
-    known = None if nominal is None else nominal.model
-    full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full, known)
+    full = solved.balance([drive.load.torque for drive in drives], None if nominal is None else nominal.full)
     pressures = solved.model.pressures(full.response)
     check_half_widths(drives, full.response, pressures)
     light, play = None, None
     if "light" in stages:
         near = full if nominal is None else nominal.light
-        light = solved.balance([drive.load.light_torque for drive in drives], near, known)
+        light = solved.balance([drive.load.light_torque for drive in drives], near)
     if "backlash" in stages:
         play = backlash(solved.model.geometries, solved.angle, WHEEL_ANGLE)
     free = None

@@ -70,7 +70,7 @@ def spectra(without):
     angle = 2.0 * np.pi * 40 * np.arange(POSITIONS) / POSITIONS
     errors = [[], []]
     for rows in np.array_split(angle, 4):
-        found = solve_at_output(model, [drive], rows, drive.load.torque, gaps=False)
+        found = solve_at_output(model, [drive], rows, drive.load.torque)
         for own, teeth in zip(errors, models, strict=True):
             own.append(
                 drive.output_deviation(wheel_angle_of_input(teeth, found), np.full(rows.size, drive.load.torque))

@@ -13,10 +13,10 @@ import numpy as np
 from ltca.analysis.loaded_analysis import LoadedAnalysis, analyse
 from ltca.analysis.summary import summarise
 from ltca.drive.units.quantities import ARCSEC
-from ltca.geometry.first_contact import unloaded_transmission_error
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import position_angles
 from ltca.reading.drive_file import load_drive
+from validation.methods.unloaded import unloaded_transmission_error
 from validation.rows import Row, positive_row, range_row
 
 POSITIONS = 360

@@ -9,11 +9,12 @@ import numpy as np
 from ltca.analysis.transmission_error_orders import Order, fit_orders
 from ltca.arrays import FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
-from ltca.geometry.first_contact import backlash, carrying_pins, first_contact
+from ltca.geometry.first_contact import backlash, first_contact
 from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
+from validation.methods.unloaded import carrying_pins
 
 ARCMIN = 180.0 * 60.0 / np.pi
 ROUND_OFF = "round-off of sums of some 100 mm"

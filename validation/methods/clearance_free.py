@@ -35,8 +35,9 @@ from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
-from ltca.geometry.first_contact import carrying_holes, carrying_rollers, first_contact
+from ltca.geometry.first_contact import first_contact
 from ltca.geometry.pairs import ContactGeometry
+from validation.methods.unloaded import carrying_holes, carrying_rollers
 
 WHEEL = 3
 """Place of the wheel angle in the unknowns: behind the disc, before the rollers."""

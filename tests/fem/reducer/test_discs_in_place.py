@@ -40,7 +40,7 @@ def test_gaps_are_those_of_the_pairs(three, disc):
     np.testing.assert_allclose(gaps.pins, -flank.approach[0], rtol=0.0, atol=1e-11)
     np.testing.assert_allclose(gaps.holes, -geometry.holes(angle, POSE).approach[0], rtol=0.0, atol=1e-12)
     rays = geometry.rollers(angle)
-    reach = rays.touching_distance(np.array([complex(x, y)]))
+    reach = rays.touching(rays.direction.conjugate() * np.array([complex(x, y)]))
     np.testing.assert_allclose(gaps.rollers, (reach - rays.outermost)[0], rtol=0.0, atol=1e-12)
 
 

@@ -88,7 +88,10 @@ def test_gaps_are_those_of_the_pairs(rv, disc):
     rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
     displacement = bores.each(bores.displacement, gaps.rollers.size)
     np.testing.assert_allclose(
-        gaps.rollers, (rays.touching_distance(displacement) - rays.outermost)[0], rtol=0.0, atol=1e-12
+        gaps.rollers,
+        (rays.touching(rays.direction.conjugate() * displacement) - rays.outermost)[0],
+        rtol=0.0,
+        atol=1e-12,
     )
     np.testing.assert_allclose(gaps.pins, -geometry.flank(angle, pose).approach[0], rtol=0.0, atol=1e-11)
     assert gaps.holes.size == 0

@@ -26,7 +26,7 @@ def walked():
     """Angles, forces, and loads of all pins over the 14 turns after which pins and lobes stand as before."""
     angle = 2.0 * np.pi * np.arange(PINS * PERIOD) / PERIOD
     model = replace(HalfSpace().prepare(PAPER).model, friction=None)
-    found = solve_at_output(model, [PAPER], angle, PAPER.load.torque, gaps=False)
+    found = solve_at_output(model, [PAPER], angle, PAPER.load.torque)
     return angle, single_forces(model, angle, found.pose, found.response), found.response.pin_load
 
 

@@ -275,7 +275,7 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
     at_race, at_bore = (
         dot(rays.direction, leans) for leans in (bores.each(geometry.journal_leans(pose), count), geometry.lean(pose))
     )
-    inward = 0.5 * (rays.outermost - rays.touching_distance(displacement))
+    inward = 0.5 * (rays.outermost - rays.touching(rays.direction.conjugate() * displacement))
     lean = 0.5 * (at_race + at_bore)
     taken = taken_of(drive, scale=2.0)
     y = t = tuple(np.zeros(one.shape) for one in split_loads(response)[0])

@@ -417,7 +417,8 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
     )  # fmt: skip
 
     def at(row):
-        place, rate = equation.place(0.0, answer.y[:, row])
+        moment = equation.solved(0.0, answer.y[:, row])
+        place, rate = moment.place, moment.rate
         now = contacts.at(place, rate)
         stored, (disc,) = contacts.stored(place)
         return place, rate, bool(np.any(now.force)), equation.kinetic.energy(place, rate) + stored, disc
@@ -453,7 +454,7 @@ def test_a_driven_drive_that_rubs_is_driven_by_its_mean_input_torque():
 def test_a_run_that_rubs_begins_in_balance():
     """The input as told, at its speed: what is left of forces on all other freedoms, by their stiffness, is below 1e-8 mm."""
     equation = (run := prepared("paper, rubs", Course.of_values("steady", 1e-3, 1500.0))).equation
-    x = equation.place(0.0, run.start)[0]
+    x = equation.solved(0.0, run.start).place
     now = equation.contacts.at(x, equation.lead * equation.input_motion(0.0)[1])
     assert np.abs(now.friction).max() > 0.0
     left = equation.basis.T @ (now.force + now.friction - equation.output_torque(0.0) * equation.output_turns)
@@ -512,7 +513,7 @@ class OneContact:
         slope = 1.5 * self.stiffness * np.sqrt(pressed)
         force = np.array([self.stiffness * pressed**1.5])
         return SimpleNamespace(
-            force=force, friction=self.damping * rate, outside=np.zeros(1), stiffness=np.array([[slope]]), discs=()
+            force=force, friction=self.damping * rate, outside=np.zeros(1), stiffness=np.array([[slope]]), loads={}
         )
 
 

@@ -234,10 +234,11 @@ def test_leans_without_mass_are_in_balance(name):
     run = prepared(name, Course.of_values("steady", 1e-3, 30.0))
     state, equation = run.start.copy(), run.equation
     state[: equation.freedoms] += 1e-4 * np.random.default_rng(4).standard_normal(equation.freedoms)
-    x, rate = equation.place(0.0, state)
+    moment = equation.solved(0.0, state)
+    x, rate = moment.place, moment.rate
     own, half_width = run.motion.light_leans, float(np.max(equation.contacts._model.discs[0].geometry.half_width))
     assert own.size
-    now, before = equation.contacts.at(x, rate), equation.place(0.0, run.start)[0]
+    now, before = equation.contacts.at(x, rate), equation.solved(0.0, run.start).place
     left = (now.force - now.outside)[own]
     assert half_width * np.abs(np.linalg.solve(now.stiffness[np.ix_(own, own)], left)).max() < 1e-8
     assert half_width * np.abs(x - before)[own].max() > 1e-6  # they do follow
@@ -265,7 +266,7 @@ def test_friction_presses_the_leans_as_in_statics():
     """
     run = prepared("paper, rubs", Course.of_values("steady", 1e-4, 1500.0))
     equation, motion = run.equation, run.motion
-    x, _ = equation.place(0.0, run.start)
+    x = equation.solved(0.0, run.start).place
     now = equation.contacts.at(x, equation.lead * equation.input_motion(0.0)[1])
     model = HalfSpace().prepare(drive_of("paper, rubs")).model
     at, pose = x[motion.crank : motion.crank + 1], x[None, : motion.pose.size]

@@ -14,12 +14,12 @@ from ltca.equilibrium.balance import lever_arms, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
-from ltca.geometry.first_contact import unloaded_transmission_error
 from ltca.laws.spring import SpringLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
+from validation.methods.unloaded import unloaded_transmission_error
 
 
 @pytest.fixture(scope="module")

@@ -232,7 +232,7 @@ def test_touching_distance_of_rollers(drives):
         angles, poses = random_poses(drive, 3, 12)
         rays = geometry.rollers(angles)
         displacement = disc_displacement(poses)[:, None]
-        centre = rays.touching_distance(displacement) * rays.direction
+        centre = rays.touching(rays.direction.conjugate() * displacement) * rays.direction
         reach = np.abs(centre - displacement) + geometry.placement.roller_radii
         np.testing.assert_allclose(reach, geometry.placement.bore_radius, rtol=1e-14)
-        assert np.all(rays.touching_distance(displacement) > 0.0)
+        assert np.all(rays.touching(rays.direction.conjugate() * displacement) > 0.0)
