@@ -21,11 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficient_files import cache_folder, derivation, kept_file, read_kept, require_cache
+from ltca.compliance.coefficient_files import derivation
 from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import has_ring_of_elements, loaded_half_arc, ring_fingerprint, ring_shape
 from ltca.laws.backed import SLOT_DATUM
 from ltca.laws.ring_beam import beam_flexibility, beyond_rigid_motions, on_bolts, rigid_motions
+from ltca.output.derived_files import cache_folder, kept_file, read_kept, require_cache
 from ltca.output.locks import held
 from ltca.reading.ring_file import read_ring, require_same_ring, write_ring
 

@@ -16,6 +16,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.contact.round_bodies import held_ring_approach
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
+from ltca.output import derived_files
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
@@ -50,7 +51,7 @@ def derived(monkeypatch, tmp_path):
 
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
+    monkeypatch.delenv(derived_files.INSTEAD, raising=False)
     monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     return made
 
