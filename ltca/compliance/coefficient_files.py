@@ -8,28 +8,24 @@ many of its kind share the memory) that returns the dataset of ``docs/theory/coe
 
 from __future__ import annotations
 
-import atexit
 import os
-import shutil
 import sys
-import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import as_completed
-from contextlib import suppress
 from importlib.metadata import entry_points
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
 from ltca.compliance.near_field import NEAR_FIELDS, NearField
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import single_discs
-from ltca.errors import CycloError, DamagedFileError, PlaceError
+from ltca.errors import CycloError, DamagedFileError
+from ltca.output.derived_files import cache_folder, kept_file, read_kept, require_cache
 from ltca.output.process_pools import process_pool
 from ltca.output.processes import interrupts_held
 from ltca.output.progress import progress
-from ltca.output.provenance import cache_home, code_hash, code_version
 from ltca.output.resources import MUCH, derivation_memory
 from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
@@ -37,15 +33,10 @@ from ltca.reading.coefficient_file import require_laws, write_coefficients
 if TYPE_CHECKING:
     import xarray as xr
 
-Content = TypeVar("Content")
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
 """Files of shipped drives (``python benchmarks/shipped_coefficients.py``)."""
-INSTEAD = "CYCLO_TEMPORARY_CACHE"
-"""Variable that names a cache that cannot be written and, on a line of its own, the folder of this run instead of it."""
-LEAST_CACHE_ROOM = 1 << 20
-"""Least free space of a folder that is used as cache, bytes."""
 MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
@@ -63,15 +54,6 @@ def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
     return kept_file(file_name(drive, bodies))
 
 
-def kept_file(name: str) -> Path:
-    """Return where a derived file of a name is kept, or would be; PlaceError where a folder stands there."""
-    new, kept = (folder / name for folder in (cache_folder(), _kept_folder()))
-    for path in (new, kept):
-        if path.is_dir():
-            raise PlaceError(f"{path}: is a folder in the place of a file that is derived and kept: remove it")
-    return kept if kept.exists() and not new.exists() else new
-
-
 def file_name(drive: Drive, bodies: Bodies = "plane") -> str:
     """Return the name of a file of coefficients by the shape that they belong to."""
     return f"coefficients-{drive.shape_fingerprint(bodies)}-{'solid' if bodies == 'solid' else 'strain'}.nc"
@@ -86,44 +68,6 @@ def shipped_file(drive: Drive, bodies: Bodies = "plane") -> Path | None:
 def has_coefficients(drive: Drive, bodies: Bodies = "plane") -> bool:
     """Tell whether coefficients of a drive of one disc are there without being derived."""
     return shipped_file(drive, bodies) is not None or cached_file(drive, bodies).exists()
-
-
-def cache_folder() -> Path:
-    """Return where new coefficients are kept."""
-    kept = _kept_folder()
-    of, _, instead = os.environ.get(INSTEAD, "").partition("\n")
-    return Path(instead) if instead and of == str(kept) else kept
-
-
-def _kept_folder() -> Path:
-    return cache_home() / f"{code_version()}-{code_hash('ltca', 'fem')}"
-
-
-def require_cache() -> None:
-    """Make sure, before anything is derived, that it can be kept; in a temporary folder of this run if need be, with a word."""
-    folder = _kept_folder()
-    if cache_folder() != folder:
-        return
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(bytes(LEAST_CACHE_ROOM))
-            probe.flush()
-    except OSError as error:
-        print(
-            f"warning: {folder}: cannot be written ({error.strerror or error}): what is derived is used but not kept; "
-            "XDG_CACHE_HOME names another place",
-            file=sys.stderr,
-        )
-        instead = tempfile.mkdtemp(prefix="cyclo-cache-")
-        # The workers of this run inherit it and find there what has been derived.
-        os.environ[INSTEAD] = f"{folder}\n{instead}"
-        atexit.register(_forget, instead, os.getpid())
-
-
-def _forget(folder: str, process: int) -> None:
-    if os.getpid() == process:
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 def find_coefficients(
@@ -259,20 +203,6 @@ def _kept(drive: Drive, bodies: Bodies) -> InfluenceCoefficients | None:
     if (path := shipped_file(drive, bodies)) is not None:
         return load_coefficients(path, drive, lawful="quick")
     return read_kept(file_name(drive, bodies), lambda path: load_coefficients(path, drive, lawful="quick"))
-
-
-def read_kept(name: str, read: Callable[[Path], Content]) -> Content | None:
-    """Return what a derived file in the cache holds; None where there is none, or a damaged one, which is made again."""
-    path = kept_file(name)
-    if not path.exists():
-        return None
-    try:
-        return read(path)
-    except DamagedFileError as error:
-        print(f"warning: {error}; derived again", file=sys.stderr)
-        with suppress(OSError):
-            path.unlink()
-        return None
 
 
 def expected_seconds(drives: Iterable[Drive]) -> list[float]:

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_coefficients
-from ltca.drive.parts import Bodies, Clearance, Drive, Material
+from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
 from ltca.geometry.boundary_stations import (
@@ -31,15 +31,10 @@ from ltca.geometry.boundary_stations import (
     turned_boundaries,
     weights_of,
 )
-from ltca.geometry.flank import FlankProfile
-from ltca.geometry.placement import Placement
-from ltca.reading.coefficient_file import quality_warning, read_coefficients
+from ltca.reading.coefficient_file import quality_warning, read_coefficients, require_places, require_same_bodies
 from ltca.reading.coefficient_schema import (
     flank_clustering,
     is_solid,
-    require_same_supports,
-    shape_differences,
-    shape_of,
 )
 
 if TYPE_CHECKING:
@@ -48,8 +43,6 @@ if TYPE_CHECKING:
 
 SOLID = "solid"
 """What files of solid bodies say of their plane."""
-PLACE_TOLERANCE = 1e-3
-"""Largest misplacement of a station relative to a half-width: coefficients change by that part of the near field's unit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -332,14 +325,14 @@ def load_coefficients(
     own = bodies_of(data)
     if bodies not in (None, own):
         raise CycloError(f"{path}: holds coefficients of {own} bodies, not of {bodies} ones: give --bodies {own}")
-    shared = _require_same_bodies(path, data, drive)
+    shared = require_same_bodies(path, data, drive)
     boundaries = len(np.unique(data["station_boundary"].values))
     walls = 1 + drive.crank.number + drive.number_of_holes
     if boundaries != walls:
         raise DamagedFileError(
             f"{path}: has stations on {boundaries} boundaries; flank, bores and holes of {drive.name} are {walls}"
         )
-    _require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
+    require_places(path, data, nominal_shape(drive, keep_clearance=not shared))
     found = _coefficients_of_dataset(data, drive, shared=shared)
     stress = read_stress_coefficients(data, (found.flank, *found.bores, *found.holes))
     return replace(
@@ -353,48 +346,6 @@ def load_coefficients(
 def bodies_of(data: Labelled) -> Bodies:
     """Return what bodies a file is of."""
     return "solid" if is_solid(data) else "plane"
-
-
-def _require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:
-    """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
-    own, theirs, attributes = drive.body_shape(bodies_of(data)), shape_of(data), data.attrs
-    nominal = replace(drive, clearance=Clearance()).body_shape(bodies_of(data))
-    if theirs == own or (theirs == nominal and bool(attributes["clearances_left_out"])):
-        require_same_supports(str(path), data, drive)
-        return theirs != own
-    different = shape_differences(theirs, own)
-    if set(different) <= {"bore_radius", "hole_radius"}:
-        bearing, hole = (f"{float(attributes[name]):g} mm" for name in ("bearing_clearance", "pin_hole_clearance"))
-        raise CycloError(
-            f"{path}: belongs to the clearances bearing {bearing} and pin hole {hole}, not to clearance.bearing = "
-            f"{drive.clearance.bearing:g} mm and clearance.pin_hole = {drive.clearance.pin_hole:g} mm of this case: derive "
-            "its own (cyclo derive --case), or a file that leaves them out on purpose (cyclo derive --without-clearance)"
-        )
-    differences = ", ".join(f"{name} {there} (here {here})" for name, (there, here) in different.items())
-    raise CycloError(
-        f"{path}: belongs to another drive ({attributes.get('drive', '?')}); it differs from {drive.name} in "
-        f"{differences}: derive its own (cyclo derive)"
-    )
-
-
-def _require_places(path: Path, data: Labelled, drive: Drive) -> None:
-    """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
-    flank = FlankProfile.of_drive(drive)
-    holes = Placement.of_drive(drive)
-    centres = [*holes.bore_centres.tolist(), *holes.hole_centres.tolist()]
-    radii = [float(holes.bore_radius)] * holes.cranks + holes.hole_radii.tolist()
-    boundary, parameter = data["station_boundary"].values, data["station_parameter"].values
-    place = data["station_x"].values + 1j * data["station_y"].values
-    for number in range(1 + len(centres)):
-        own = boundary == number
-        circle = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter[own]) if number else None
-        expected = flank.flank(parameter[own]) if circle is None else circle
-        away = np.max(np.abs(place[own] - expected) / data["station_half_width"].values[own])
-        if not away <= PLACE_TOLERANCE:
-            raise DamagedFileError(
-                f"{path}: a station of boundary {number} stands {away:.3g} half-widths of its patch from the wall of "
-                f"{drive.name}: must be within {PLACE_TOLERANCE:g}"
-            )
 
 
 def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> InfluenceCoefficients:

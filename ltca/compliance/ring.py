@@ -21,11 +21,12 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficient_files import cache_folder, derivation, kept_file, read_kept, require_cache
+from ltca.compliance.coefficient_files import derivation
 from ltca.drive.parts import Drive
 from ltca.drive.ring_shape import has_ring_of_elements, loaded_half_arc, ring_fingerprint, ring_shape
 from ltca.laws.backed import SLOT_DATUM
 from ltca.laws.ring_beam import beam_flexibility, beyond_rigid_motions, on_bolts, rigid_motions
+from ltca.output.derived_files import cache_folder, kept_file, read_kept, require_cache
 from ltca.output.locks import held
 from ltca.reading.ring_file import read_ring, require_same_ring, write_ring
 
@@ -99,27 +100,32 @@ def derive_beforehand(drive: Drive) -> None:
 
 
 def _known(drive: Drive) -> FloatArray:
-    """The content of the file of a drive's ring, found once in a process: from the cache, or newly derived and kept there."""
-    key, name = ring_fingerprint(drive), file_name(drive)
-    if key in _KNOWN:
-        return _KNOWN[key]
-    read = partial(_read, drive)
-    if (found := read_kept(name, read)) is None:
-        derive = derivation(DERIVATION)
-        require_cache()
-        with held(cache_folder() / f".{name}.lock", "the cache", "derive", wait=True):
-            if (found := read_kept(name, read)) is None:  # no other process was faster
-                path = cache_folder() / name
-                print(
-                    f"deriving the ring of {drive.name}, once for each shape (some seconds; kept in {path.parent})",
-                    file=sys.stderr,
-                )
-                write_ring(derive(drive), path)
-                found = read(kept_file(name))
-    while len(_KNOWN) >= MAX_KNOWN:
-        del _KNOWN[next(iter(_KNOWN))]
-    _KNOWN[key] = found
-    return found
+    """The content of the file of a drive's ring, found once in a process."""
+    key = ring_fingerprint(drive)
+    if key not in _KNOWN:
+        while len(_KNOWN) >= MAX_KNOWN:
+            del _KNOWN[next(iter(_KNOWN))]
+        _KNOWN[key] = _found(drive)
+    return _KNOWN[key]
+
+
+def _found(drive: Drive) -> FloatArray:
+    """The same from the cache, or newly derived and kept there."""
+    name, read = file_name(drive), partial(_read, drive)
+    if (found := read_kept(name, read)) is not None:
+        return found
+    derive = derivation(DERIVATION)
+    require_cache()
+    with held(cache_folder() / f".{name}.lock", "the cache", "derive", wait=True):
+        if (found := read_kept(name, read)) is not None:  # another process was faster
+            return found
+        path = cache_folder() / name
+        print(
+            f"deriving the ring of {drive.name}, once for each shape (some seconds; kept in {path.parent})",
+            file=sys.stderr,
+        )
+        write_ring(derive(drive), path)
+    return read(kept_file(name))
 
 
 def _read(drive: Drive, path: Path) -> FloatArray:

@@ -247,9 +247,7 @@ class StageMesh:
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""
-        forces = self.forces(moments)
-        both = np.stack((forces.in_plane, forces.couple), axis=-1)
-        return np.asarray(np.matmul(both, np.swapaxes(self.on_supports, -1, -2)))
+        return np.asarray(np.matmul(self.on_planets(moments)[0], np.swapaxes(self.on_supports, -1, -2)))
 
     def on_planets(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """Return force and couple of the teeth on every planet, N and N·mm, shape (positions, cranks, 2), and their derivatives

@@ -68,7 +68,8 @@ def pose_between(
     seen, span = _turned(pose, -angle, coordinates), angle[after] - angle[before]
     slope = (seen[after] - seen[before]) / np.where(span > 0.0, span, 1.0)[:, None]
     ahead = np.minimum(np.maximum(wanted - angle[before], 0.0), span)
-    return _turned(seen[before] + slope * ahead[:, None], wanted, coordinates)
+    inside = np.where((ahead < span)[:, None], seen[before] + slope * ahead[:, None], seen[after])
+    return _turned(inside, wanted, coordinates)
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:

@@ -105,7 +105,7 @@ def solve_at_output(
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
         near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light))
         start, inner = near.pose, Start.after(near.response)
-    wanted = _OutputTorque.of_drives(drives, loads)
+    wanted = OutputTorque.of_drives(drives, loads)
     friction, moment = model.friction, wanted.mean
     rubs = friction is not None and friction.turns
     if wheel_moment is not None and not rubs:
@@ -171,8 +171,8 @@ def _jam(
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _OutputTorque:
-    """What positions of drives are balanced at, one row for each.
+class OutputTorque:
+    """Torques that positions of drives are balanced at, one row for each.
 
     Attributes
     ----------
@@ -198,7 +198,7 @@ class _OutputTorque:
     reference: FloatArray
 
     @classmethod
-    def of_drives(cls, drives: Sequence[Drive], loads: FloatArray) -> _OutputTorque:
+    def of_drives(cls, drives: Sequence[Drive], loads: FloatArray) -> OutputTorque:
         """Return the torques, those of drive after drive."""
 
         def each(value: Callable[[Drive], float]) -> NDArray[Any]:
@@ -250,20 +250,3 @@ class _OutputTorque:
             "over in N·mm",
             history,
         )
-
-
-def balance_at_output(
-    model: Reducer,
-    balance: Balance,
-    drive: Drive,
-    crank_angle: FloatArray,
-    torque: float,
-    start: FloatArray | None = None,
-) -> Equilibrium:
-    """Balance positions of one drive at an output torque, N·mm, by any method that balances moments on the wheel.
-
-    `balance` takes crank angles, moments on the wheel and poses to start from, and returns balanced positions.
-    """
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    wanted = _OutputTorque.of_drives([drive], np.full(angle.size, torque))
-    return wanted.balanced(model, balance(angle, wanted.mean, start), balance)

@@ -14,6 +14,7 @@ threads         Linear algebra on one thread where results are made
 supervisor      Run a program that ends with whoever asked for it, together with its folder of temporary files
 progress        Progress: a bar on a terminal, a line every few seconds without one
 provenance      Which code made a result: version and a hash of its sources, the same on every machine that has the same code
+derived_files   Where files are kept that are derived once: in the cache of the user, or in a folder of this run
 case_texts      Texts about several cases, each once with the names of its cases
 file_names      Names of drives and cases as they stand in names of files
 files           Files that are either whole or not there: written beside their place, then moved into it

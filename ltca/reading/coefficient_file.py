@@ -16,7 +16,10 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.errors import DamagedFileError, PlaceError
+from ltca.drive.parts import Bodies, Clearance, Drive
+from ltca.errors import CycloError, DamagedFileError, PlaceError
+from ltca.geometry.flank import FlankProfile
+from ltca.geometry.placement import Placement
 from ltca.output.files import whole_file
 from ltca.output.netcdf import DAMAGE, opened_hdf5, read_netcdf, write_netcdf
 from ltca.reading.coefficient_laws import (
@@ -28,7 +31,14 @@ from ltca.reading.coefficient_laws import (
     check_quick_laws,
     check_stated_quality,
 )
-from ltca.reading.coefficient_schema import NEEDED, is_solid, require_schema
+from ltca.reading.coefficient_schema import (
+    NEEDED,
+    is_solid,
+    require_same_supports,
+    require_schema,
+    shape_differences,
+    shape_of,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,6 +55,10 @@ _LAWFUL: set[tuple[str, bool]] = set()
 """Checksums of contents that this process has checked already, by all laws or by the quick ones: a run reads its file more than
 once.
 """
+
+
+PLACE_TOLERANCE = 1e-3
+"""Largest misplacement of a station relative to a half-width: coefficients change by that part of the near field's unit."""
 
 
 def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
@@ -188,3 +202,46 @@ def _canonical(value: Any) -> str:
     if isinstance(value, Real):
         return float(value).hex()
     return str(value)
+
+
+def require_same_bodies(path: Path, data: Labelled, drive: Drive) -> bool:
+    """Return whether the file serves the drive although it leaves the clearances out, which it must say itself."""
+    bodies: Bodies = "solid" if is_solid(data) else "plane"
+    own, theirs, attributes = drive.body_shape(bodies), shape_of(data), data.attrs
+    nominal = replace(drive, clearance=Clearance()).body_shape(bodies)
+    if theirs == own or (theirs == nominal and bool(attributes["clearances_left_out"])):
+        require_same_supports(str(path), data, drive)
+        return theirs != own
+    different = shape_differences(theirs, own)
+    if set(different) <= {"bore_radius", "hole_radius"}:
+        bearing, hole = (f"{float(attributes[name]):g} mm" for name in ("bearing_clearance", "pin_hole_clearance"))
+        raise CycloError(
+            f"{path}: belongs to the clearances bearing {bearing} and pin hole {hole}, not to clearance.bearing = "
+            f"{drive.clearance.bearing:g} mm and clearance.pin_hole = {drive.clearance.pin_hole:g} mm of this case: derive "
+            "its own (cyclo derive --case), or a file that leaves them out on purpose (cyclo derive --without-clearance)"
+        )
+    differences = ", ".join(f"{name} {there} (here {here})" for name, (there, here) in different.items())
+    raise CycloError(
+        f"{path}: belongs to another drive ({attributes.get('drive', '?')}); it differs from {drive.name} in "
+        f"{differences}: derive its own (cyclo derive)"
+    )
+
+
+def require_places(path: Path, data: Labelled, drive: Drive) -> None:
+    """Refuse stations that do not lie on the walls of the disc: coefficients between them are of their places."""
+    flank = FlankProfile.of_drive(drive)
+    holes = Placement.of_drive(drive)
+    centres = [*holes.bore_centres.tolist(), *holes.hole_centres.tolist()]
+    radii = [float(holes.bore_radius)] * holes.cranks + holes.hole_radii.tolist()
+    boundary, parameter = data["station_boundary"].values, data["station_parameter"].values
+    place = data["station_x"].values + 1j * data["station_y"].values
+    for number in range(1 + len(centres)):
+        own = boundary == number
+        circle = centres[number - 1] + radii[number - 1] * np.exp(1j * parameter[own]) if number else None
+        expected = flank.flank(parameter[own]) if circle is None else circle
+        away = np.max(np.abs(place[own] - expected) / data["station_half_width"].values[own])
+        if not away <= PLACE_TOLERANCE:
+            raise DamagedFileError(
+                f"{path}: a station of boundary {number} stands {away:.3g} half-widths of its patch from the wall of "
+                f"{drive.name}: must be within {PLACE_TOLERANCE:g}"
+            )

@@ -20,12 +20,10 @@ import numpy as np
 from ltca.analysis.engines import CoupledEngine, Engine, ring_lender
 from ltca.compliance.coefficient_files import (
     GROUP,
-    cache_folder,
     coefficient_warnings,
     derivation_words,
     find_case_coefficients,
     has_coefficients,
-    require_cache,
     told_seconds,
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
@@ -36,6 +34,7 @@ from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
+from ltca.output.derived_files import cache_folder, require_cache
 from ltca.output.locks import held
 from ltca.output.provenance import code_hash
 from ltca.output.regular_files import regular_file

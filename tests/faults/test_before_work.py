@@ -77,9 +77,9 @@ def test_memory_is_told_before(ring):
         tracemalloc.stop()
     assert 0.3 < peak / (memory_per_position(drive) * positions.size) < 1.0
     # What only the search asks for is not kept.
-    follow = analysis.full.response.follow
-    assert (follow.shifts is None) == (ring is None)
-    assert follow.by_pose is follow.approach_by_pose is follow.shifts_by_pose is None
+    inner = analysis.full.response.inner
+    assert (inner.shifts is None) == (ring is None)
+    assert inner.by_pose is inner.approach_by_pose is inner.shifts_by_pose is None
 
 
 def test_room_on_the_disc(tmp_path, monkeypatch):

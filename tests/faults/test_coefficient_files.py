@@ -16,6 +16,7 @@ from ltca.compliance.coefficients import load_coefficients
 from ltca.contact.round_bodies import held_ring_approach
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DamagedFileError
+from ltca.output import derived_files
 from ltca.output.netcdf import write_netcdf
 from ltca.output.provenance import code_hash
 from ltca.reading.coefficient_file import CHECKSUM, checksum_of, read_coefficients, write_coefficients
@@ -50,7 +51,7 @@ def derived(monkeypatch, tmp_path):
 
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.delenv(coefficient_files.INSTEAD, raising=False)
+    monkeypatch.delenv(derived_files.INSTEAD, raising=False)
     monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     return made
 
@@ -338,7 +339,7 @@ def test_an_unwritable_cache_is_told_before_the_derivation(drive, derived, tmp_p
     """It derived for 48 s and then failed. What it has is used; what is derived is used and not kept."""
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    monkeypatch.setattr(coefficient_files.atexit, "register", lambda *arguments: kept.append(arguments))
+    monkeypatch.setattr(derived_files.atexit, "register", lambda *arguments: kept.append(arguments))
     kept = []
     found = find_case_coefficients({"CS-1": drive})
     said = capsys.readouterr().err.splitlines()
@@ -358,7 +359,7 @@ def test_caches_are_keyed_by_the_code(drive, derived, monkeypatch):
     find_coefficients(drive)
     find_coefficients(drive)
     assert len(derived) == 1
-    monkeypatch.setattr(coefficient_files, "code_hash", lambda *packages: "another code")
+    monkeypatch.setattr(derived_files, "code_hash", lambda *packages: "another code")
     find_coefficients(drive)
     assert len(derived) == 2
 

@@ -22,7 +22,7 @@ from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, lever_arms, solve_equilibrium
 from ltca.equilibrium.newton import TOLERANCE
-from ltca.equilibrium.output_torque import balance_at_output
+from ltca.equilibrium.output_torque import OutputTorque
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
@@ -260,7 +260,9 @@ class HeldWheel:
             near = solve_equilibrium(self.tables, angle, START_TORQUE_RATIO * moment, begin)
             return solve_paper_equilibrium(self.model, angle, moment, near.pose)
 
-        return balance_at_output(self.model, iterate, self.drive, crank_angle, torque, start)
+        angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
+        wanted = OutputTorque.of_drives([self.drive], np.full(angle.size, torque))
+        return wanted.balanced(self.model, iterate(angle, wanted.mean, start), iterate)
 
 
 def prepare(drive: Drive, tables: Reducer, model: Reducer) -> HeldWheel:

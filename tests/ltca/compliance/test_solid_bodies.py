@@ -242,7 +242,7 @@ def test_loads_and_moments_are_slopes_of_one_energy(hold_coefficients):
     np.testing.assert_allclose(moments, loads.T, atol=1e-7 * np.max(np.abs(loads)))
     hold_coefficients()
     system, pose = ContactSystem(model), found.pose
-    follow = system.respond(ANGLES, pose, None, roughly=False).following().approach_by_pose[0]
+    follow = system.respond(ANGLES, pose, None, roughly=False).inner.approach_by_pose[0]
     carries = system.respond(ANGLES, pose, None, roughly=False).corrected_load[0, 0] > 0.0
     for coordinate, step in enumerate((1e-6, 1e-6, 2e-8, 1e-7, 1e-7, 2e-8)):
         ends = []
