@@ -20,9 +20,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
 from ltca.compliance.contact_laws import ContactLaws
+from ltca.compliance.half_space import spring_in_slices
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
@@ -38,7 +38,6 @@ from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     back_shaft_pins,
-    shaft_pin_seat,
     shaft_pin_stiffness,
     tip_share,
     tip_slope,
@@ -202,20 +201,12 @@ class CoupledCompliance:
         )
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         stiffness = shaft_pin_stiffness(drive)
-        slices, width = drive.contact.slices, drive.disc.thickness
+        slices = drive.contact.slices
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
         at_hole: Any = laws.hole
         if not hole_near_field and not bends_behind:
-            at_hole = (
-                SpringLaw(stiffness=stiffness)
-                if slices == 1
-                else sliced.back_line(
-                    sliced.SlicedSpring(stiffness=stiffness, length=width, slices=slices),
-                    shaft_pin_seat(drive),
-                    place.shaft_pin_plays,
-                )
-            )
+            at_hole = SpringLaw(stiffness=stiffness) if slices == 1 else spring_in_slices(drive, place.shaft_pin_plays)
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
         own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
@@ -266,10 +257,7 @@ class CoupledCompliance:
         laws = self.near_field
         if response.leaning_pins is not None:
             place, rigid = self.geometry.placement, laws.rigid_shaft_pins
-            at_hole: Any = laws.hole
-            modulus = getattr(at_hole, "contact", at_hole).contact_modulus
-            kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
-            return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
+            return pressures_in_slices(response, laws.kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
         assert response.deformation is not None
         near = response.deformation[:, 0]
         pins, rollers = response.pin_load.shape[1], self.outer_radius.size

@@ -167,8 +167,7 @@ class HalfSpaceCompliance:
         pins: Any = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
         rigid = False
         if shaft_pin_beam(drive) is None:
-            spring = sliced.SlicedSpring(stiffness=shaft_pin_stiffness(drive), length=wide, slices=slices)
-            hole: Any = sliced.back_line(spring, shaft_pin_seat(drive), place.shaft_pin_plays)
+            hole: Any = spring_in_slices(drive, place.shaft_pin_plays)
         else:
             # A beam bends behind its contact, which says how its load lies along the width.
             rigid = not shaft_pins_yield(drive)
@@ -204,7 +203,7 @@ class HalfSpaceCompliance:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
         place, kinds, rollers, laws = self.geometry.placement, self.kinds, response.rollers, self.roller_laws
         if response.leaning_pins is not None:
-            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SlicedSpring)
+            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SeparateSlices)
             return pressures_in_slices(
                 response, kinds, place, rigid_shaft_pins=self.rigid_shaft_pins, shaft_pins_on_springs=spring
             )
@@ -234,6 +233,18 @@ def _line(
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def spring_in_slices(drive: Drive, play: FloatArray) -> Any:
+    """Return the law of shaft pins on springs that are even along the width, sleeves behind them; arguments as below."""
+    width, slices = drive.disc.thickness, drive.contact.slices
+    springs = sliced.SeparateSlices(
+        law=SpringLaw(stiffness=shaft_pin_stiffness(drive)),
+        length=width,
+        slices=slices,
+        relief=np.zeros(sliced.slice_heights(width, slices).shape),
+    )
+    return sliced.back_line(springs, shaft_pin_seat(drive), play)
 
 
 def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:

@@ -12,8 +12,7 @@ tracked_grid    Kinds of contacts, separation of their surfaces, and the pressur
 tilted_grid     Contacts that tilt, on grids over their whole width: load and moment by approach and tilt
 end_pressure    The largest pressure of a contact and its ratio to that at mid-width
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
-hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical
-                point contact
+hertz           Hertz' line contact: half-width and peak pressure by the load
 round_bodies    Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races
 ==============  ============================================================
 """

@@ -10,8 +10,7 @@ slenderness_curve      Smooth curves over the slenderness of a line contact: qui
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
 sliced_contact         What contacts in slices carry, whatever their law, and where a neighbour starts from
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
-sliced_spring          Springs even along the width, in slices
-sliced_plane           Plane strain in slices that do not feel each other
+separate_slices        Contacts in slices that do not feel each other: a law of the plane at every height
 between_contacts       Newton's steps of parts between contacts in slices: place and lean where forces and moments balance
 sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt

@@ -60,7 +60,7 @@ class BackedLaw(ContactLaw):
     """
 
     contact: ContactLaw
-    seat: ConformingLaw | None
+    seat: ConformingLaw | None = None
     play: FloatArray = by_drive(1)
     flexibility: float = 0.0
     overlap: float = 0.0

@@ -1,6 +1,6 @@
 """Newton's steps of parts that stand between contacts in slices: place and lean at which forces and moments balance.
 
-A roller between race and bore, a loose pin or a sleeve between flank and seat: the energy of what holds the part is convex in its
+A loose pin or a sleeve between flank and seat: the energy of what holds the part is convex in its
 place and lean but for a little geometry, and its slopes are what is left of forces and moments. A step is shortened where the
 energy rises again steeply at its end: the slope along the step says so, also where differences of energies are round-off.
 """
@@ -58,7 +58,7 @@ class PartStiffness(NamedTuple):
 
 
 def newton_step(
-    force: FloatArray, moment: FloatArray, stiffness: PartStiffness, most: FloatArray | float = np.inf
+    force: FloatArray, moment: FloatArray, stiffness: PartStiffness
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return Newton's step of place, mm, and lean, rad, of parts, and the slope of the energy along it, N·mm.
 
@@ -68,14 +68,12 @@ def newton_step(
         Slopes of the energy by place and lean, N and N·mm.
     stiffness : PartStiffness
         Second derivatives there.
-    most : float or array, shape (parts,)
-        Largest turn, rad.
     """
     stiff, mixed, turning, half = stiffness
     turning = turning + DAMPING * half**2 * stiff
     held = stiff > 0.0
     determinant = np.where(held, stiff * turning - mixed**2, 1.0)
-    turn = np.clip(-(stiff * moment - mixed * force) / determinant, -most, most)
+    turn = -(stiff * moment - mixed * force) / determinant
     step = -(force + mixed * turn) / np.where(held, stiff, 1.0)
     return step, turn, np.asarray(force * step + moment * turn)
 

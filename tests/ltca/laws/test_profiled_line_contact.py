@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.hertz import solve_point_contact
 from ltca.errors import CycloError
 from ltca.geometry.length_profile import CircularCrown, EndRelief, LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, profiled_table, solve_profiled_patch
+from validation.hertz import solve_point_contact
 
 MODULUS = 113_187.0
 CROWN = CircularCrown(length=11.8, crown_radius=3000.0)

@@ -16,11 +16,11 @@ from ltca.analysis.life.laminae import (
     solve_laminae,
     straight_rollers,
 )
-from ltca.contact.hertz import solve_point_contact
 from ltca.drive.parts import LengthProfile
 from ltca.geometry.length_profile import generator_profile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import solve_profiled_patch
+from validation.hertz import solve_point_contact
 
 LENGTH, RADIUS, RHO, MODULUS = 11.8, 5.0, 1.0 / (1.0 / 5.0 + 1.0 / 19.5), 113_187.0
 
