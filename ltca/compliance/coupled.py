@@ -30,7 +30,7 @@ from ltca.compliance.response import (
     DiscResponse,
     KindPressures,
 )
-from ltca.contact.tracked_grid import ContactKind
+from ltca.contact.contact_kind import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam

@@ -12,7 +12,7 @@ from ltca.compliance import sliced
 from ltca.compliance.contact_laws import ContactLaws
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
 from ltca.compliance.response import ContactPressures, DiscResponse
-from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, Material, PinShaft, PinWheel, contact_modulus
 from ltca.drive.pin_beams import shaft_pin_beam

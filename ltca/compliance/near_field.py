@@ -24,9 +24,9 @@ from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
 from ltca.compliance.solid_cylinder import free_ends_of_cylinder
+from ltca.contact.contact_kind import ContactKinds
 from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.contact.hertz import effective_radius, line_half_width
-from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulus

@@ -1,6 +1,6 @@
 """Contacts that tilt, solved on grids over their whole width: load and moment by approach and tilt, with derivatives.
 
-As `ltca.contact.tracked_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
+As `ltca.contact.fitted_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
 where the undeformed surfaces overlap, [z₁, z₂]: no contact reaches beyond. It moves steadily with approach and tilt, and so do
 load and moment; only widths are on a ladder (every second rung, blended), whose matrices serve patches of every length. Cells
 shrink toward an end of the line that carries more than toward one that the contact does not reach; near the boundary of the two
@@ -13,16 +13,16 @@ needs no further factorisation.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray, freeze
-from ltca.contact.grid_ladder import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step
-from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
-from ltca.contact.tracked_grid import ContactKind, Separation
+from ltca.contact.contact_kind import ContactKind, Separation
+from ltca.contact.fitted_grid import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step, unit_separations
+from ltca.contact.pressure_cells import PatchGrid, PatchPressure, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
 
 STEP = 2.0 * RUNG
@@ -35,7 +35,6 @@ KEPT = 24
 """Matrices kept, 7 MB each for flanks."""
 SAMPLES = 201
 """Heights at which the ends of the overlap are looked for before they are refined."""
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class GridShape(NamedTuple):
@@ -74,7 +73,7 @@ class TiltedPiece:
     shape : GridShape
         Of the grid.
     place : int
-        Place of the separation, see `ltca.contact.tracked_grid.Separation`.
+        Place of the separation, see `ltca.contact.contact_kind.Separation`.
     patch : Patch
         Where it lies; its depth does not matter.
     active : array of bool, shape (cells,)
@@ -127,26 +126,6 @@ class TiltedPress(NamedTuple):
     edges: FloatArray
     line_load: FloatArray
     pieces: TiltedPieces
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TiltedPatch:
-    """Pressure over a patch.
-
-    Attributes
-    ----------
-    x_edges, z_edges : array
-        Edges of the cells along the profile (from 0 where symmetric) and along the width, mm.
-    pressure : array, shape (nx, nz)
-        Mean pressure of each cell, MPa.
-    symmetric : bool
-        Whether the cells are the positive half along the profile.
-    """
-
-    x_edges: FloatArray
-    z_edges: FloatArray
-    pressure: FloatArray
-    symmetric: bool
 
 
 @lru_cache(maxsize=KEPT)
@@ -231,7 +210,7 @@ def press_tilted(
 
 def recover_tilted(
     kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
-) -> TiltedPatch | None:
+) -> PatchPressure | None:
     """Return the pressure over a contact on the grid that fits it best, None where it is open; as for `press_tilted`."""
     patch = find_patch(kind, approach, tilt)
     if patch is None:
@@ -242,12 +221,8 @@ def recover_tilted(
     grid = whole_grid(shape, kind.cells, kind.symmetric)
     closing = np.array(((approach + tilt * patch.middle) / patch.length, tilt))
     pressure = np.maximum(piece.pressure(closing, separation.weights), 0.0).reshape(grid.shape)
-    return TiltedPatch(
-        x_edges=grid.x_edges * patch.length,
-        z_edges=patch.middle + grid.y_edges * patch.length,
-        pressure=kind.contact_modulus * pressure,
-        symmetric=kind.symmetric,
-    )
+    placed = replace(grid.scaled(patch.length), y_edges=patch.middle + grid.y_edges * patch.length)
+    return PatchPressure(grid=placed, pressure=kind.contact_modulus * pressure)
 
 
 def _width_place(patch: Patch, effective_radius: float) -> float:
@@ -288,7 +263,7 @@ def _press_piece(
     by_approach = piece.rate[:, 0] / length
     by_tilt = piece.rate[:, 1] + piece.rate[:, 0] * (patch.middle / length)
     arms = flat * arm.ravel()
-    gap = (_unit_separations(kind, piece.shape, patch, separation) @ weights) * length
+    gap = (unit_separations(grid, separation, length, kind.relief, patch.middle) @ weights) * length
     penetration = approach + tilt * arm.ravel() - gap
     numbers = np.array(
         (load, moment, scale * (by_approach @ flat), scale * (by_tilt @ flat), scale * (by_tilt @ arms),
@@ -322,7 +297,7 @@ def _settle(
                 and piece.holds(closing, weights, slack)
             ):
                 return piece
-    units = _unit_separations(kind, shape, patch, separation)
+    units = unit_separations(grid, separation, patch.length, kind.relief, patch.middle)
     arm = np.tile(grid.y_centres, grid.shape[0])
     penetration = closing[0] + closing[1] * arm - units @ weights
     if active is None:
@@ -344,19 +319,3 @@ def _settle(
         opening_taken=opening[:, 2:],
     )
     return freeze(piece)
-
-
-def _unit_separations(kind: ContactKind, shape: GridShape, patch: Patch, separation: Separation) -> FloatArray:
-    """Mean separation of every cell at the places of a separation, by the length of the patch, shape (cells, places)."""
-    grid, length = whole_grid(shape, kind.cells, kind.symmetric), patch.length
-    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
-    across = np.stack(
-        [
-            separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
-            for number in range(separation.weights.size)
-        ],
-        axis=-1,
-    )
-    heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-    along = kind.relief(patch.middle + length * heights) @ _WEIGHTS / (2.0 * length)
-    return np.asarray((across[:, None] + along[None, :, None]).reshape(-1, separation.weights.size))

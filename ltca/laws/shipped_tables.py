@@ -22,8 +22,8 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.contact import end_pressure
+from ltca.contact.contact_kind import CELLS as TRACKED_CELLS
 from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
-from ltca.contact.tracked_grid import CELLS as TRACKED_CELLS
 from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
 from ltca.laws import line_contact, sliced_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactLaw, LineContactTable

@@ -218,7 +218,7 @@ def crowned_roller_rows(cells: int = 24) -> list[Row]:
         relative_row(
             1,
             "peak pressure of a crowned roller",
-            float(solution.max_pressure),
+            float(solution.pressure.max()),
             point.peak_pressure,
             "MPa",
             5e-3,

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from ltca.contact import end_pressure
-from ltca.contact.tracked_grid import CELLS, ContactKind
+from ltca.contact.contact_kind import CELLS, ContactKind
 from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
 from ltca.laws import line_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactTable, line_contact_table

@@ -1,9 +1,4 @@
-"""Kinds of contacts of a drive, the separation of their surfaces, and the grid that fits a contact: its pressure.
-
-An influence matrix depends on the shape of its grid alone, not on its size: grids are cached by shape (cell width
-by patch length, in steps of 5 %, `ltca.contact.grid_ladder`) with unit length, and one small set of matrices serves every
-contact of a drive. `validation.methods.grids` balances drives on such grids.
-"""
+"""Kinds of contacts of a drive, and the separation of their surfaces."""
 
 from __future__ import annotations
 
@@ -13,20 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ltca.arrays import BoolArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.contact.free_end import FreeEnds, free_ends_of
-from ltca.contact.grid_ladder import (
-    RUNG,
-    SHADES,
-    GridRung,
-    find_cylinder_cells,
-    find_patch_length,
-    find_reach_place,
-    find_width_place,
-    unit_grid,
-)
-from ltca.contact.pressure_cells import PatchGrid, PatchSolution
-from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Disc, Drive, Material, contact_modulus
 from ltca.geometry.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
@@ -34,13 +17,9 @@ from ltca.geometry.length_profile import SummedProfile, generator_profile, has_l
 Departure = Callable[[FloatArray], FloatArray]
 
 CELLS = 12
-FIT = 0.08
-"""Largest error of ln(half-width) of the rung on which `solve_fitted` accepts a contact."""
 
 END_STRETCH = 0.01
 """Fraction of the length over which the largest pressure is averaged, see `ltca.contact.end_pressure`."""
-
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -198,89 +177,3 @@ class Separation:
     def weights(self) -> FloatArray:
         """Weights of the one or two places."""
         return np.array([1.0 - self.part, self.part]) if self.part > 0.0 else np.ones(1)
-
-
-def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchSolution:
-    """Return the pressure over a contact on the grid that fits its half-width.
-
-    Approach δ and effective radius ρ are in mm; `departure` gives the separation in mm over the distance along the tangent in
-    mm.
-    """
-    separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
-    reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
-    rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
-    patch, active = None, expected_cells(kind, rung, effective_radius, approach)
-    for _ in range(2):
-        if patch is not None:
-            place = float(np.log(patch.half_width / find_patch_length(kind.length, rung.reach_rung))) / RUNG
-            if patch.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:
-                break
-            rung = GridRung(round(place), reach)
-        unit = unit_separations(kind, rung, separation)[:, 0]
-        areas = scaled_areas(kind, rung)
-        solved = solve_unilateral_contact(
-            rung_grid(kind, rung).influence,
-            (approach / find_patch_length(kind.length, rung.reach_rung) - unit) * areas,
-            start=active,
-            load_direction=areas,
-        )
-        patch, active = patch_solution(kind, rung, unit, approach, solved), solved.active
-    assert patch is not None
-    return patch
-
-
-def rung_grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
-    """Return the grid of unit length on a rung for contacts of a kind."""
-    return unit_grid(rung.rung, rung.reach_rung, cells=kind.cells, symmetric=kind.symmetric)
-
-
-def scaled_areas(kind: ContactKind, rung: GridRung) -> FloatArray:
-    """Return π times the areas of the cells of that grid, by the patch length squared, shape (cells,)."""
-    return np.asarray(np.pi * rung_grid(kind, rung).areas.ravel())
-
-
-def unit_separations(kind: ContactKind, rung: GridRung, separation: Separation) -> FloatArray:
-    """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places)."""
-    grid, length = rung_grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
-    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
-    units = np.empty((*grid.shape, separation.weights.size))
-    for number in range(units.shape[2]):
-        along_x = separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
-        units[..., number] = along_x[:, None]
-    if kind.generator is not None:
-        points = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-        units += (kind.generator.relief(points * length) @ _WEIGHTS / (2.0 * length))[None, :, None]
-    return units.reshape(-1, units.shape[2])
-
-
-def patch_solution(
-    kind: ContactKind, rung: GridRung, unit: FloatArray, approach: float, solved: UnilateralSolution
-) -> PatchSolution:
-    """Return a dimensionless solution in mm and MPa."""
-    shape, length = rung_grid(kind, rung), find_patch_length(kind.length, rung.reach_rung)
-    grid = PatchGrid(
-        x_edges=shape.x_edges * length,
-        y_edges=shape.y_edges * length,
-        symmetric_x=shape.symmetric_x,
-        symmetric_y=shape.symmetric_y,
-    )
-    areas, pressure = scaled_areas(kind, rung), solved.pressure * kind.contact_modulus
-    scale = kind.contact_modulus * length * shape.images / np.pi
-    return PatchSolution(
-        grid=grid,
-        approach=approach,
-        pressure=pressure.reshape(grid.shape),
-        load=scale * length * float(solved.pressure @ areas),
-        stiffness=scale * float(solved.rate @ areas),
-        energy=0.5 * grid.images * float(pressure @ ((approach - unit * length) * grid.areas.ravel())),
-        solution=solved,
-    )
-
-
-def expected_cells(kind: ContactKind, rung: GridRung, radius: float, approach: float) -> BoolArray:
-    """Return initial contact cells without a neighbouring pose: those of the cylinder of the expected half-width."""
-    if kind.generator is None:
-        width = round(SHADES * find_width_place(kind.length, rung.reach_rung, radius, approach))
-        return find_cylinder_cells(width, rung.rung, kind.cells, kind.symmetric)
-    grid = rung_grid(kind, rung)
-    return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1])
