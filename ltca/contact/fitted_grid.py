@@ -99,9 +99,25 @@ def find_patch_length(length: float, reach_rung: int) -> float:
     return length * float(np.exp(-reach_rung * RUNG))
 
 
-def expected_cells(grid: PatchGrid, rung: GridRung) -> BoolArray:
-    """Return contact cells to start from on the grid of a rung, shape (cells,): those within the half-width that it has."""
-    return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1])
+def expected_cells(kind: ContactKind, rung: GridRung) -> BoolArray:
+    """Return contact cells to start from on the grid of a rung, shape (nx, ny): of a cylinder with the half-width of the rung."""
+    if kind.generator is None:
+        return _cylinder_cells(rung, kind.cells, kind.symmetric)
+    grid = rung_grid(kind, rung)
+    return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1]).reshape(grid.shape)
+
+
+@cache
+def _cylinder_cells(rung: GridRung, cells: int, symmetric: bool) -> BoolArray:
+    grid, half_width = unit_grid(rung, cells, symmetric), float(np.exp(rung.rung * RUNG))
+    size = half_width  # √(ρδ)
+    for _ in range(10):
+        size *= half_width / expected_half_width(1.0, size, size)
+    x = grid.x_edges
+    separation = np.repeat((x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size), grid.shape[1])
+    return solve_patch(
+        grid, separation, 1.0, size, start=np.repeat(np.abs(grid.x_centres) < half_width, grid.shape[1])
+    ).contact
 
 
 def unit_separations(
@@ -137,7 +153,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
     length = find_patch_length(kind.length, reach)
     rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
-    start = expected_cells(rung_grid(kind, rung), rung)
+    start = expected_cells(kind, rung)
     for trial in range(2):
         grid = rung_grid(kind, rung)
         unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)
