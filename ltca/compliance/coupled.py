@@ -39,8 +39,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     back_shaft_pins,
     shaft_pin_stiffness,
-    tip_share,
-    tip_slope,
+    tip_motion,
 )
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.spring import SpringLaw
@@ -190,7 +189,7 @@ class CoupledCompliance:
                     f"{fingerprint}"
                 ]
             )
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
         place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
         laws = NearFieldLaws.of_drive(

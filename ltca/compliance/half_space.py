@@ -26,12 +26,11 @@ from ltca.laws.backed import (
     shaft_pin_seat,
     shaft_pin_stiffness,
     sleeve_overlap,
-    tip_share,
-    tip_slope,
+    tip_motion,
     wheel_pin_seat,
 )
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.generator_law import law_for_profile
+from ltca.laws.profiled_line_contact import law_for_profile
 from ltca.laws.spring import SpringLaw
 
 SAMPLES_PER_LOBE = 180
@@ -100,7 +99,7 @@ class HalfSpaceCompliance:
         In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
         that differ little have the same.
         """
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
         place, bearing, parts = geometry.placement, drive.crank_bearing, drive.materials
         inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
         pin_radii = np.ones(1)

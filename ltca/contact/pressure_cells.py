@@ -347,6 +347,21 @@ def solve_cylinder_patch(
     return solve_on(half_width, cells, start)
 
 
+def extrapolate(
+    solve: Callable[..., PatchSolution], cells: int, half_width: float, energy_gain: float, field_gain: float
+) -> tuple[float, ...]:
+    """Return energy, load, mid-width pressure and half-width of a contact on cells of no size (Richardson), from two grids.
+
+    `solve` takes `cells`, `half_width` and `start` as `solve_cylinder_patch`: both grids cut the contact at the same place. A
+    gain 1/(2ᵖ − 1) belongs to the order of convergence p, that of energy and load or that of pressure and half-width.
+    """
+    coarse = solve(cells=cells // 2, half_width=half_width)
+    fine = solve(cells=cells, half_width=half_width, start=coarse)
+    gains = {"energy": energy_gain, "load": energy_gain, "mid_pressure": field_gain, "half_width": field_gain}
+    pairs = ((getattr(fine, name), getattr(coarse, name), gain) for name, gain in gains.items())
+    return tuple(value + gain * (value - before) for value, before, gain in pairs)
+
+
 def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
     """Mean relief over every y cell by Gauss points."""
     y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS

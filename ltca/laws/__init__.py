@@ -16,7 +16,6 @@ sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
 shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
-generator_law          The tabulated law of a roller or pin, with the profile along its length that the drive defines
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
 seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve
 conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve

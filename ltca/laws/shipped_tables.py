@@ -17,13 +17,14 @@ import argparse
 import json
 import os
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.contact import end_pressure
 from ltca.contact.contact_kind import CELLS as TRACKED_CELLS
-from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
+from ltca.contact.pressure_cells import expected_half_width, extrapolate, solve_cylinder_patch
 from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
 from ltca.laws import line_contact, sliced_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactLaw, LineContactTable
@@ -64,16 +65,13 @@ def tabulate_line_contact(
         for _ in range(2):
             guess = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
             half_width = guess.half_width
-        # Both grids must cut the contact at the same place for their difference to extrapolate.
-        coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-        fine = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width, start=coarse)
-        row[0] = (fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)) / slenderness
-        row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
-        row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
-    energy, pressure, half_width_ratio = rows.T
+        solve = partial(solve_cylinder_patch, slenderness, 1.0, 1.0, 1.0)
+        energy, _, *fields = extrapolate(solve, cells, half_width, _ENERGY_GAIN, _FIELD_GAIN)
+        row[:] = energy / slenderness, *fields
+    stored, pressure, half_width_ratio = rows.T
     # A slender contact has δ = q/(π E*) (ln 1/δ + …), so δ E* L/F → −X/π, b² = 4 F ρ/(π E* L) and p = E* b/(2ρ).
     return LineContactTable(
-        inverse_energy=SlendernessCurve.through(places, 1.0 / energy, 2.0 / np.pi),
+        inverse_energy=SlendernessCurve.through(places, 1.0 / stored, 2.0 / np.pi),
         inverse_square_pressure=SlendernessCurve.through(places, pressure**-2, 1.0),
         inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2, 0.25),
     )
