@@ -59,7 +59,7 @@ def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and ratio as they ship with the package (made by `ltca.laws.shipped_tables`); solved for other numbers of cells."""
+    """Nodes and ratio as they ship with the package (made by `validation.shipped_tables`); solved for other numbers of cells."""
     if cells != CELLS:
         return tabulate_cylinder_ratio(cells)
     stored = json.loads(TABLE.read_text(encoding="utf-8"))

@@ -14,7 +14,6 @@ separate_slices        Contacts in slices that do not feel each other: a law of 
 between_contacts       Newton's steps of parts between contacts in slices: place and lean where forces and moments balance
 sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
-shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
 seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve

@@ -6,13 +6,13 @@ serves every pin and roller. The table holds the energy U = ∫F dδ = E* L δ²
 is smooth and nearly linear in X for long contacts, the load and the stiffness are exact derivatives of one
 function (what an equilibrium solver by minimum potential needs), and the energy is closed.
 
-The table ships with the package as ``line_contact.json``; `ltca.laws.shipped_tables` makes it.
+The table ships with the package as ``line_contact.json``; `validation.shipped_tables` makes it.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -48,24 +48,20 @@ class LineContactTable:
     inverse_square_pressure: SlendernessCurve
     inverse_square_half_width: SlendernessCurve
 
-    @classmethod
-    def of_content(cls, content: dict[str, dict[str, Any]]) -> LineContactTable:
-        """Return the table of which `content` gave these plain numbers, to the last bit."""
-        return cls(**{name: SlendernessCurve.of_content(curve) for name, curve in content.items()})
-
-    def content(self) -> dict[str, dict[str, Any]]:
-        """Return the curves by name as plain numbers, for a file."""
-        return {item.name: getattr(self, item.name).content() for item in fields(self)}
-
 
 @cache
 def line_contact_table() -> LineContactTable:
     """Return the dimensionless table that ships with the package (read once in the process).
 
-    `ltca.laws.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
+    `validation.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
     the machine.
     """
-    return LineContactTable.of_content(json.loads(TABLE.read_text(encoding="utf-8")))
+    stored = json.loads(TABLE.read_text(encoding="utf-8"))
+    curves = {
+        name: SlendernessCurve(**curve | {"coefficients": np.array(curve["coefficients"])})
+        for name, curve in stored.items()
+    }
+    return LineContactTable(**curves)
 
 
 @dataclass(frozen=True, slots=True)

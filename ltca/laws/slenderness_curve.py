@@ -8,9 +8,8 @@ half the time of scipy's evaluation, which searches the knots.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import factorial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,21 +115,6 @@ class SlendernessCurve:
     spacing: float
     coefficients: FloatArray
     light_slope: float
-
-    @classmethod
-    def through(cls, nodes: FloatArray, values: FloatArray, light_slope: float) -> SlendernessCurve:
-        """Curve through positive values at uniform nodes."""
-        return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
-
-    @classmethod
-    def of_content(cls, content: dict[str, Any]) -> SlendernessCurve:
-        """Return the curve of which `content` gave these plain numbers, to the last bit."""
-        return cls(**content | {"coefficients": np.array(content["coefficients"])})
-
-    def content(self) -> dict[str, Any]:
-        """Return the curve as plain numbers, for a file."""
-        values = {item.name: getattr(self, item.name) for item in fields(self)}
-        return values | {"coefficients": self.coefficients.tolist()}
 
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
