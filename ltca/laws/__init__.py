@@ -11,7 +11,6 @@ line_contact           Load–approach law of an uncrowned line contact between 
 sliced_contact         What contacts in slices carry, whatever their law, and where a neighbour starts from
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
 separate_slices        Contacts in slices that do not feel each other: a law of the plane at every height
-between_contacts       Newton's steps of parts between contacts in slices: place and lean where forces and moments balance
 sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length

@@ -5,19 +5,23 @@ A loose pin, or a sleeve, stands between the flank (or the hole) and its seat. I
 :math:`\psi` are where the energy of both is least: forces and moments of both are equal. A seat is the plane law
 (`ltca.laws.conforming`) at every height: slices of it do not feel each other. Across the line of load a loose part aligns itself
 with its seat.
+
+That energy is convex in place and lean but for a little geometry, and its slopes are what is left of forces and moments. A step
+is shortened where the energy rises again steeply at its end: the slope along the step says so, also where differences of
+energies are round-off.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.errors import ConvergenceError
-from ltca.laws.between_contacts import SETTLED, PartStiffness, newton_step, shorten_steps, unbalanced
 from ltca.laws.conforming import ConformingLaw
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.separate_slices import SeparateSlices
@@ -27,6 +31,19 @@ from ltca.laws.sliced_line import TOUCHING, SlicedLine
 
 LEAST_PLAY = 1e-9
 """Play that stands for none, mm."""
+SETTLED = 1e-10
+"""Largest force and moment (by half the length) left over, by the larger load of the two contacts."""
+ROUND_OFF = 1e-7
+"""What is left that may be due to what the slices leave over."""
+MAX_TRIALS = 16
+"""Places along a step at which the slope of the energy is asked for."""
+STEEPEST = 0.5
+"""Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
+LEAST_TURNING = 1e-9
+"""Stiffness against leaning by that of the place times the square of half the length: what touches at one end alone turns about
+that end freely."""
+DAMPING = 1e-6
+"""The same of a step: what is left over of what turns freely must not send it far."""
 MAX_ITERATIONS = 60
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
@@ -148,7 +165,7 @@ class SlicedSeat(SeparateSlices):
             by, turn, slope = newton_step(
                 (held.load - contact.load)[going],
                 (held.moment - contact.moment)[going],
-                _together(contact, held, half).take(going),
+                PartStiffness.of_both(contact, held, half).take(going),
             )
 
             def move(some: NDArray[np.intp], fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -159,7 +176,7 @@ class SlicedSeat(SeparateSlices):
                 contact.put(rows, there)
                 held.put(rows, under)
                 ahead = (under.load - there.load) * by[some] + (under.moment - there.moment) * turn[some]
-                return ahead, _together(there, under, half).along(by[some], turn[some])
+                return ahead, PartStiffness.of_both(there, under, half).along(by[some], turn[some])
 
             shorten_steps(slope, move)
 
@@ -170,7 +187,8 @@ class SlicedSeat(SeparateSlices):
             size = np.maximum(np.maximum(held.load, contact.load), lightest)
             left = np.maximum(np.abs(held.load - contact.load), np.abs(held.moment - contact.moment) / half) / size
             history.append(float(np.max(left, initial=0.0)))
-            going = unbalanced(left, before)
+            # Nothing but what the slices leave over is left where steps no longer help.
+            going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
             if not going.size:
                 return contact, held
             before = left
@@ -287,22 +305,12 @@ def _in_series(contact: SlicedContact, seat: SlicedContact, half: float) -> Slic
     own[:, 0, 0], own[:, 1, 1] = contact.by_approach, contact.moment_by_tilt
     own[:, 0, 1] = own[:, 1, 0] = contact.by_tilt
     # What a relief keeps open although middle or ends overlap carries nothing and has no stiffness.
-    found = own - np.matmul(own, np.linalg.solve(_together(contact, seat, half).matrix, own))
+    found = own - np.matmul(own, np.linalg.solve(PartStiffness.of_both(contact, seat, half).matrix, own))
     return replace(
         contact,
         by_approach=found[:, 0, 0],
         by_tilt=0.5 * (found[:, 0, 1] + found[:, 1, 0]),
         moment_by_tilt=found[:, 1, 1],
-    )
-
-
-def _together(contact: SlicedContact, seat: SlicedContact, half: float) -> PartStiffness:
-    """Second derivatives of the energy by travel and lean."""
-    return PartStiffness(
-        contact.by_approach + seat.by_approach,
-        contact.by_tilt + seat.by_tilt,
-        contact.moment_by_tilt + seat.moment_by_tilt,
-        half,
     )
 
 
@@ -313,3 +321,91 @@ def back_line(
     if seat is None:
         return contact
     return BackedLine(contact=contact, seat=SlicedSeat.of_law(seat, contact.slices), play=play)
+
+
+class PartStiffness(NamedTuple):
+    """Second derivatives of the energy by place and lean, N/mm, N/rad and N·mm/rad."""
+
+    place: FloatArray
+    mixed: FloatArray
+    lean: FloatArray
+    half: float
+    """Half of the length of the contacts, mm."""
+
+    @classmethod
+    def of_both(cls, contact: SlicedContact, seat: SlicedContact, half: float) -> PartStiffness:
+        """Return those of parts between a contact and a seat, by travel and lean."""
+        mixed, lean = contact.by_tilt + seat.by_tilt, contact.moment_by_tilt + seat.moment_by_tilt
+        return cls(contact.by_approach + seat.by_approach, mixed, lean, half)
+
+    def take(self, rows: NDArray[np.intp]) -> PartStiffness:
+        """Return those of some parts."""
+        return PartStiffness(self.place[rows], self.mixed[rows], self.lean[rows], self.half)
+
+    def along(self, step: FloatArray, turn: FloatArray) -> FloatArray:
+        """Return the second derivative along steps, N·mm."""
+        return np.asarray(step * (self.place * step + 2.0 * self.mixed * turn) + self.lean * turn**2)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """Matrices of place and lean, shape (parts, 2, 2); those of parts that nothing holds are one."""
+        found = np.empty((self.place.size, 2, 2))
+        found[:, 0, 0], found[:, 1, 1] = self.place, self.lean + LEAST_TURNING * self.half**2 * self.place
+        found[:, 0, 1] = found[:, 1, 0] = self.mixed
+        found[self.place <= 0.0] = np.eye(2)
+        return found
+
+
+def newton_step(
+    force: FloatArray, moment: FloatArray, stiffness: PartStiffness
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return Newton's step of place, mm, and lean, rad, of parts, and the slope of the energy along it, N·mm.
+
+    Parameters
+    ----------
+    force, moment : array, shape (parts,)
+        Slopes of the energy by place and lean, N and N·mm.
+    stiffness : PartStiffness
+        Second derivatives there.
+    """
+    stiff, mixed, turning, half = stiffness
+    turning = turning + DAMPING * half**2 * stiff
+    held = stiff > 0.0
+    determinant = np.where(held, stiff * turning - mixed**2, 1.0)
+    turn = -(stiff * moment - mixed * force) / determinant
+    step = -(force + mixed * turn) / np.where(held, stiff, 1.0)
+    return step, turn, np.asarray(force * step + moment * turn)
+
+
+def shorten_steps(
+    slope: FloatArray, move: Callable[[NDArray[np.intp], FloatArray], tuple[FloatArray, FloatArray]]
+) -> FloatArray:
+    """Return which parts of steps are taken: the whole, or where the slope of the energy along them has nearly gone.
+
+    Parameters
+    ----------
+    slope : array, shape (steps,)
+        Slopes of the energy along the steps where they start, N·mm.
+    move : callable
+        Takes some of the steps, by their numbers, to parts of them; returns slope and second derivative of the energy there.
+        Every step is left where it was taken last.
+    """
+    fraction, low, high = np.ones(slope.size), np.zeros(slope.size), np.full(slope.size, np.inf)
+    steep, rows = STEEPEST * np.abs(slope), np.arange(slope.size)
+    for trial in range(MAX_TRIALS):
+        ahead, bend = move(rows, fraction[rows])
+        far = ahead > steep[rows]
+        short = (ahead < -steep[rows]) & np.isfinite(high[rows])
+        high[rows[far]], low[rows[short]] = fraction[rows[far]], fraction[rows[short]]
+        on = far | short
+        if not on.any() or trial == MAX_TRIALS - 1:
+            break
+        rows, ahead, bend = rows[on], ahead[on], bend[on]
+        # Where a slice begins to carry the slope turns within a little: from beyond, its tangent leads there. From before it
+        # leads anywhere; places are halved by their size then.
+        tangent = fraction[rows] - ahead / np.where(bend > 0.0, bend, 1.0)
+        within = (bend > 0.0) & (tangent > low[rows]) & (tangent < high[rows])
+        cut = high[rows] * np.clip(np.abs(slope[rows]) / (np.abs(slope[rows]) + np.abs(ahead)), 0.1, 0.7)
+        halved = np.where(low[rows] > 0.0, np.sqrt(low[rows] * high[rows]), cut)
+        fraction[rows] = np.where(within, tangent, halved)
+    return fraction

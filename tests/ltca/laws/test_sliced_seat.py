@@ -14,7 +14,7 @@ from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.separate_slices import SeparateSlices
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.sliced_seat import BackedLine, SlicedSeat
+from ltca.laws.sliced_seat import MAX_TRIALS, BackedLine, PartStiffness, SlicedSeat, newton_step, shorten_steps
 from ltca.laws.spring import SpringLaw
 from ltca.reading.drive_file import load_drive
 
@@ -189,3 +189,30 @@ def test_loose_pins_of_a_batch_have_the_leads_of_their_own_drives():
         alone = law.respond(delta[row : row + 1], theta[row : row + 1], radius[row : row + 1])
         for name in ("load", "moment", "by_approach", "slice_load"):
             np.testing.assert_allclose(getattr(together, name)[row], getattr(alone, name)[0], rtol=1e-12, atol=1e-9)
+
+
+def test_steps_end_where_a_slice_begins_to_carry():
+    """A soft slope of the energy and, from a tenth or a thousandth of the step on, one a billion times as stiff."""
+    soft, stiff, place = 1.0, 1e9, np.array([0.1, 1e-3, 2.0])
+    trials = []
+
+    def move(some, fraction):
+        trials.append(some.size)
+        beyond = np.maximum(fraction - place[some], 0.0)
+        return soft * (fraction - 1.0) + stiff * beyond, soft + stiff * (beyond > 0.0)
+
+    found = shorten_steps(np.full(3, -soft), move)
+    # The least of the energy lies where the stiff part takes the slope off: a billionth beyond the place.
+    assert found == pytest.approx([0.1, 1e-3, 1.0], rel=1e-5)
+    assert len(trials) <= 3 < MAX_TRIALS
+
+
+def test_what_touches_at_one_end_alone_is_not_sent_far():
+    """Both contacts at the same end: turning about it costs nothing, and what is left over there is round-off."""
+    half, stiff = 5.0, 1e5
+    free = PartStiffness(*(np.array([value]) for value in (stiff, stiff * half, stiff * half**2)), half)
+    step, turn, slope = newton_step(np.array([1e-3]), np.array([1e-3 * half + 1e-8]), free)
+    # Along the stiff mode a thousandth of a newton is 1e-8 mm; the free one is held by a millionth of that stiffness.
+    assert abs(step[0] + half * turn[0]) == pytest.approx(1e-8, rel=1e-2)
+    assert half * abs(turn[0]) < 1e-7
+    assert slope[0] < 0.0
