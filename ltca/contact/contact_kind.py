@@ -80,38 +80,31 @@ class ContactKinds:
     @classmethod
     def of_drive(cls, drive: Drive, cells: int = CELLS) -> ContactKinds:
         """Return the kinds of contact of a drive, with `cells` over each half-width and over half of each length."""
-        bearing, wheel, parts = drive.crank_bearing, drive.pin_wheel, drive.materials
+        bearing, wheel, parts, wide = drive.crank_bearing, drive.pin_wheel, drive.materials, drive.disc.thickness
         roller = generator_profile(bearing.roller_profile, drive.roller_length, bearing.roller_radius)
+
+        def kind(
+            length: float,
+            bodies: tuple[Material, Material],
+            generator: SummedProfile | None = None,
+            *,
+            flank: bool = False,
+        ) -> ContactKind:
+            return ContactKind(
+                length=length,
+                contact_modulus=contact_modulus(*bodies),
+                generator=generator,
+                symmetric=not flank,
+                cells=cells,
+                lead=drive.disc if flank and has_lead(drive.disc) else None,
+            )
+
+        pin = generator_profile(wheel.pin_profile, wide, wheel.pin_radius)
         return cls(
-            pins=ContactKind(
-                length=drive.disc.thickness,
-                contact_modulus=contact_modulus(parts.disc, drive.flank_pin),
-                generator=generator_profile(wheel.pin_profile, drive.disc.thickness, wheel.pin_radius),
-                symmetric=False,
-                cells=cells,
-                lead=drive.disc if has_lead(drive.disc) else None,
-            ),
-            inner=ContactKind(
-                length=drive.roller_length,
-                contact_modulus=contact_modulus(parts.inner_race, parts.roller),
-                generator=roller,
-                symmetric=True,
-                cells=cells,
-            ),
-            outer=ContactKind(
-                length=drive.roller_length,
-                contact_modulus=contact_modulus(parts.disc, parts.roller),
-                generator=roller,
-                symmetric=True,
-                cells=cells,
-            ),
-            holes=ContactKind(
-                length=drive.disc.thickness,
-                contact_modulus=contact_modulus(parts.disc, drive.hole_pin),
-                generator=None,
-                symmetric=True,
-                cells=cells,
-            ),
+            pins=kind(wide, (parts.disc, drive.flank_pin), pin, flank=True),
+            inner=kind(drive.roller_length, (parts.inner_race, parts.roller), roller),
+            outer=kind(drive.roller_length, (parts.disc, parts.roller), roller),
+            holes=kind(wide, (parts.disc, drive.hole_pin)),
         )
 
     def with_free_ends(self, drive: Drive, *, rigid_shaft_pins: bool) -> ContactKinds:

@@ -249,9 +249,8 @@ class ProfiledLineContactLaw(ContactLaw):
         piece = np.minimum(inside.astype(np.intp), count - 1)
         t = inside - piece
         total = [np.zeros_like(t) for _ in range(3)]
-        weights: list[FloatArray] | list[float] = [1.0]
-        if table.log_radii.size > 1:
-            weights = _lagrange_weights(table.log_radii, np.log(radius))
+        several = table.log_radii.size > 1
+        weights = _lagrange_weights(table.log_radii, np.log(radius)) if several else [np.ones(1)]
         for weight, rows in zip(weights, pieces, strict=True):
             for sums, part in zip(total, quintic(rows.take(piece, axis=1), t), strict=True):
                 sums += weight * part

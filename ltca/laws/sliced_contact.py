@@ -116,7 +116,8 @@ class SlicedContact:
 
     def shaped(self, shape: tuple[int, ...]) -> SlicedContact:
         """Return a row of contacts in a shape."""
-        return map_arrays(lambda values: values.reshape((*shape, *values.shape[1:])), self)
+        found: SlicedContact = map_arrays(lambda values: values.reshape((*shape, *values.shape[1:])), self)
+        return found
 
     @classmethod
     def of_separate(
