@@ -208,7 +208,7 @@ def shaft_pin_stiffness(drive: Drive) -> float:
     return drive.hole_stiffness if beam is None else 1.0 / own_flexibility(drive, beam)
 
 
-def tip_motion(drive: Drive) -> dict[str, float]:
+def tip_motion(drive: Drive) -> dict[str, Any]:
     """Return the displacement of a shaft pin at the disc, and its lean, 1/mm, per displacement of its tip by the ring.
 
     They are `tip_share` and `tip_slope` of `ltca.geometry.pairs.ContactGeometry`; nothing without ring, no lean without slices.

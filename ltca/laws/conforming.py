@@ -128,7 +128,7 @@ class ConformingLaw:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
         seat = _Seat.of_bodies(pin, bore, pin_radius, bore_radius, length)
         yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / bore_radius) + 0.5
-        return cls._of_seat(seat, length, yielding, None)
+        return cls._of_seat(seat, length, yielding)
 
     @classmethod
     def of_sleeve(
@@ -161,7 +161,7 @@ class ConformingLaw:
 
     @classmethod
     def _of_seat(
-        cls, seat: _Seat, length: float, yielding: float, sleeve: tuple[float, float, float] | None
+        cls, seat: _Seat, length: float, yielding: float, *sleeve: tuple[float, float, float]
     ) -> ConformingLaw:
         """The law of a seat of which the body around the pin yields that much by the first harmonic, in its E*/4μ."""
         return cls(
@@ -169,7 +169,7 @@ class ConformingLaw:
             radius=seat.radius,
             contact_modulus=seat.modulus,
             first_harmonic=float((seat.first + yielding * seat.part) / np.pi),
-            series=conforming_series(seat.mismatch, seat.breathing, sleeve),
+            series=conforming_series(seat.mismatch, seat.breathing, *sleeve),
         )
 
     def _place(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:

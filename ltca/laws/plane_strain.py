@@ -29,9 +29,8 @@ SELF_ENERGY = 0.25
 
 
 _LIGHTEST, _HEAVIEST, _KNOTS = -46.0, -0.3, 4097
+"""ln X at the ends of the curve and its knots; from the heavier end on, at a half-width of 0.8 datums, there is no law."""
 _PER_KNOT = (_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
-HIGHEST = float(np.log(2.0))
-"""ln X from which no law holds: the half-width is twice the datum there, and the approach the largest of all."""
 
 
 @cache
@@ -58,13 +57,13 @@ def _ratio(place: FloatArray) -> tuple[FloatArray, FloatArray]:
 def plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
     r"""Return Q/X and its derivative by ln X of the law in its own measure, :math:`X = Q (\ln(4/Q) + 1)/2`, in the array itself.
 
-    X = 2 δρ/D² and Q = (b/D)²; a line load is π E* δ/2 times Q/X. `place` is ln X, below `HIGHEST`.
+    X = 2 δρ/D² and Q = (b/D)²; a line load is π E* δ/2 times Q/X. `place` is ln X; where there is no law a power goes on.
     """
-    beyond = None
+    light = heavy = None
     if place.size and not (place.min() >= _LIGHTEST and place.max() < _HEAVIEST):
-        beyond = (place < _LIGHTEST) | (place >= _HEAVIEST)
-        exact = _ratio(place[beyond])
-        place[beyond] = _LIGHTEST
+        light, heavy = place < _LIGHTEST, place >= _HEAVIEST
+        exact, further = _ratio(place[light]), place[heavy] - _HEAVIEST
+        place[light | heavy] = _LIGHTEST
     place -= _LIGHTEST
     place *= _PER_KNOT
     piece = place.astype(np.intp)
@@ -82,8 +81,11 @@ def plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
     value += third
     slope += last
     slope *= _PER_KNOT
-    if beyond is not None:
-        value[beyond], slope[beyond] = exact
+    if light is not None:
+        value[light], slope[light] = exact
+        last_value, last_slope = _ratio(np.full(1, _HEAVIEST))
+        value[heavy] = last_value * np.exp(last_slope / last_value * further)
+        slope[heavy] = last_slope / last_value * value[heavy]
     return value, slope
 
 
@@ -122,7 +124,7 @@ class PlaneContactLaw(ContactLaw):
         closed = delta > 0.0
         product = (2.0 / self.datum**2) * radius * np.where(closed, delta, 1e-6 * self.datum)
         place = np.log(product)
-        if place.size and not place.max() < HIGHEST:
+        if place.size and not place.max() < _HEAVIEST:
             raise ConvergenceError(
                 f"approach beyond what the plane-strain law holds for (half-width against datum {self.datum:g} mm); "
                 "ln(2 δρ/D²)",
