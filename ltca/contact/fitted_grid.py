@@ -31,7 +31,8 @@ RUNG = 0.05
 BLEND = 0.05
 """Part of a rung about each boundary over which the grids on both sides are blended for a load that is continuous with its slope:
 their loads differ by 1e-4, so blending adds 1 % to the slope, and one contact in twenty costs two grids."""
-
+SHADES = 5
+"""Steps per rung of the half-width by which initial contact cells of cylinders are kept."""
 END_GRADING = 2.5
 """Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
 errs by 1e-4 in the load with 12 cells."""
@@ -99,25 +100,26 @@ def find_patch_length(length: float, reach_rung: int) -> float:
     return length * float(np.exp(-reach_rung * RUNG))
 
 
-def expected_cells(kind: ContactKind, rung: GridRung) -> BoolArray:
-    """Return contact cells to start from on the grid of a rung, shape (nx, ny): of a cylinder with the half-width of the rung."""
+def expected_cells(kind: ContactKind, rung: GridRung, effective_radius: float, approach: float) -> BoolArray:
+    """Return contact cells to start from on the grid of a rung, shape (nx, ny): of a cylinder of the expected half-width."""
     if kind.generator is None:
-        return _cylinder_cells(rung, kind.cells, kind.symmetric)
+        width = round(SHADES * find_width_place(kind.length, rung.reach_rung, effective_radius, approach))
+        return _cylinder_cells(width, rung, kind.cells, kind.symmetric)
     grid = rung_grid(kind, rung)
     return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1]).reshape(grid.shape)
 
 
 @cache
-def _cylinder_cells(rung: GridRung, cells: int, symmetric: bool) -> BoolArray:
-    grid, half_width = unit_grid(rung, cells, symmetric), float(np.exp(rung.rung * RUNG))
+def _cylinder_cells(width: int, rung: GridRung, cells: int, symmetric: bool) -> BoolArray:
+    grid, half_width = unit_grid(rung, cells, True), float(np.exp(width * RUNG / SHADES))
     size = half_width  # √(ρδ)
     for _ in range(10):
         size *= half_width / expected_half_width(1.0, size, size)
     x = grid.x_edges
     separation = np.repeat((x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size), grid.shape[1])
-    return solve_patch(
-        grid, separation, 1.0, size, start=np.repeat(np.abs(grid.x_centres) < half_width, grid.shape[1])
-    ).contact
+    start = np.repeat(np.abs(grid.x_centres) < half_width, grid.shape[1])
+    found = solve_patch(grid, separation, 1.0, size, start=start).contact
+    return found if symmetric else np.concatenate([found[::-1], found])
 
 
 def unit_separations(
@@ -153,7 +155,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
     length = find_patch_length(kind.length, reach)
     rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
-    start = expected_cells(kind, rung)
+    start = expected_cells(kind, rung, effective_radius, approach)
     for trial in range(2):
         grid = rung_grid(kind, rung)
         unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)

@@ -194,7 +194,7 @@ def _settle(
     if active is None:
         # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
         near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
-        active = near[0].active if near else expected_cells(kind, rung).ravel()
+        active = near[0].active if near else expected_cells(kind, rung, separation.effective_radius, approach).ravel()
     units = unit_separations(grid, separation, length, aligned_relief(kind))
     influence = grid.influence
     found = solve_unilateral_contact(
