@@ -216,3 +216,15 @@ def test_what_touches_at_one_end_alone_is_not_sent_far():
     assert abs(step[0] + half * turn[0]) == pytest.approx(1e-8, rel=1e-2)
     assert half * abs(turn[0]) < 1e-7
     assert slope[0] < 0.0
+
+
+def test_open_pins_beside_metal_of_a_lead_store_nothing():
+    """Energies of open contacts of slices that do not feel each other were those of the metal of their lead alone."""
+    seat, metal = wheel_pin_seat(loose()), -2e-4 * np.ones((SLICES, 4))
+    springs = SeparateSlices(law=SpringLaw(stiffness=1e5), length=LENGTH, slices=SLICES, relief=metal)
+    law = BackedLine(contact=springs, seat=SlicedSeat.of_law(seat, SLICES), play=np.full(2, 0.01))
+    radius = np.ones((1, 2))
+    found = law.respond(np.array([[-0.01, 0.01]]), np.zeros((1, 2)), radius)
+    energy = law.energy(found, radius)
+    assert (found.load[0, 0], energy[0, 0]) == (0.0, 0.0)
+    assert energy[0, 1] > 0.0
