@@ -19,14 +19,15 @@ from itertools import pairwise
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.errors import ConvergenceError
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+from ltca.laws.width_pressure import estimate_along_width
+from validation.methods.grid_pressures import solve_along_width
 
 LENGTH, MODULUS = 12.0, 115e3
 SLICES = (5, 9, 17, 33)

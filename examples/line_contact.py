@@ -9,8 +9,9 @@ length.
 import matplotlib.pyplot as plt
 import numpy as np
 
-from ltca.contact.hertz import line_half_width, strip_approach
+from ltca.contact.hertz import line_half_width
 from ltca.laws.line_contact import LineContactLaw
+from validation.hertz import strip_approach
 
 MODULUS, RADIUS = 113_000.0, 4.0  # E* of steel on steel, MPa; effective radius, mm
 approach = np.linspace(0.0, 0.012, 60)

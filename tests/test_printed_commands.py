@@ -109,7 +109,7 @@ LEFT_OUT = {
     r"\[-h\]": "the usage that argparse writes itself",
     r"--load-rating \"5 kN\"$": "an option behind the name of its command",
     r"--write\b": "would replace tests/budget.toml; the same without it is run",
-    r"ltca\.laws\.shipped_tables": "would replace tables of the package; tests/ltca/laws/test_shipped_tables.py makes them",
+    r"validation\.shipped_tables": "would replace tables of the package; tests/validation/test_shipped_tables.py makes them",
     r"tests\.test_pictures": "would replace pictures of the documents, which the same file and test_robot_joint.py compare",
     r"tests\.test_quantities": "would replace the schema of the package, which the same file compares",
     r"validation\.levels\.other_codes": "asks codes that are not everywhere, and would replace their stored answers",

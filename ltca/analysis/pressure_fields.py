@@ -23,10 +23,11 @@ from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.results import coordinates, provenance
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
+from ltca.contact.contact_kind import ContactKind, ContactKinds, Departure
 from ltca.contact.end_pressure import largest_pressure
-from ltca.contact.pressure_cells import PatchSolution
+from ltca.contact.fitted_grid import solve_fitted
+from ltca.contact.pressure_cells import PatchPressure
 from ltca.contact.subsurface import SubsurfaceShear, find_subsurface_shear
-from ltca.contact.tracked_grid import ContactKind, ContactKinds, Departure, solve_fitted
 from ltca.drive.hole_contact import hole_modulus
 from ltca.errors import ConvergenceError
 from ltca.geometry.separation import circle_departure, flank_departure
@@ -110,7 +111,7 @@ def recover_pressure(
     )
 
 
-def _solve_at_load(kind: ContactKind, load: float, effective_radius: float, departure: Departure) -> PatchSolution:
+def _solve_at_load(kind: ContactKind, load: float, effective_radius: float, departure: Departure) -> PatchPressure:
     """The grid at the approach at which it carries a load, by secants over the logarithms of both.
 
     What lies behind a contact, seats, bent pins, the body, has its part of the approach of the bodies: the load has not.

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.pressure_cells import PatchGrid, PatchSolution
+from ltca.contact.contact_kind import ContactKind, Departure, Separation
+from ltca.contact.pressure_cells import PatchPressure
 from ltca.contact.tilted_grid import press_tilted, recover_tilted
-from ltca.contact.tracked_grid import ContactKind, Departure, Separation
-from ltca.contact.unilateral import UnilateralSolution
 from ltca.errors import ConvergenceError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.width_pressure import largest_along
+from ltca.laws.width_pressure import PatchAlongWidth
 
 SLICES = 9
 """Of the contact by which the search for approach and tilt starts."""
@@ -29,7 +29,7 @@ _Press = Callable[[float, float], FloatArray]
 
 def solve_tilted(
     kind: ContactKind, load: float, moment: float, effective_radius: float, departure: Departure
-) -> tuple[PatchSolution, float]:
+) -> tuple[PatchPressure, float]:
     """Return the pressure of a contact that carries load and moment, N and N·mm, and its largest pressure, MPa.
 
     Parameters
@@ -77,17 +77,8 @@ def solve_tilted(
     approach, tilt = _pressed(by_grids, load, moment, half, _pressed(by_slices, load, moment, half, begin))
     patch = recover_tilted(kind, separation, approach, tilt)
     assert patch is not None
-    grid = PatchGrid(x_edges=patch.x_edges, y_edges=patch.z_edges, symmetric_x=patch.symmetric, symmetric_y=False)
-    scale = load / float(grid.images * (patch.pressure * grid.areas).sum())
-    pressure = scale * patch.pressure
-    flat = pressure.ravel()
-    solution = UnilateralSolution(
-        pressure=flat, active=flat > 0.0, opening=np.zeros(flat.size), rate=np.zeros(flat.size), history=()
-    )
-    solved = PatchSolution(
-        grid=grid, approach=approach, pressure=pressure, load=load, stiffness=0.0, energy=0.0, solution=solution
-    )
-    return solved, scale * largest_along(patch, kind)
+    scale = load / patch.load
+    return replace(patch, pressure=scale * patch.pressure), scale * PatchAlongWidth.of_patch(patch, kind).largest()[0]
 
 
 def _pressed(press: _Press, load: float, moment: float, half: float, begin: tuple[float, float]) -> tuple[float, float]:

@@ -30,7 +30,7 @@ from ltca.compliance.response import (
     DiscResponse,
     KindPressures,
 )
-from ltca.contact.tracked_grid import ContactKind
+from ltca.contact.contact_kind import ContactKind
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam
@@ -39,8 +39,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.backed import (
     back_shaft_pins,
     shaft_pin_stiffness,
-    tip_share,
-    tip_slope,
+    tip_motion,
 )
 from ltca.laws.contact_law import ContactLaw
 
@@ -182,7 +181,7 @@ class CoupledCompliance:
                     f"{fingerprint}"
                 ]
             )
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
         place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
         laws = NearFieldLaws.of_drive(
@@ -247,11 +246,9 @@ class CoupledCompliance:
         """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
         laws, place = self.near_field, self.geometry.placement
         if response.leaning_pins is not None:
-            rigid = laws.rigid_shaft_pins
-            at_hole: Any = laws.hole
-            modulus = getattr(at_hole, "contact", at_hole).contact_modulus
-            kinds = replace(laws.kinds, holes=replace(laws.kinds.holes, contact_modulus=modulus))
-            return pressures_in_slices(response, kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=rigid)
+            return pressures_in_slices(
+                response, laws.kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=laws.rigid_shaft_pins
+            )
         assert response.deformation is not None
         near = response.deformation[:, 0]
         outer_radius, hole_radius, inner_radius = self.contact_laws[1:]

@@ -11,7 +11,7 @@ from ltca.arrays import FloatArray, by_drive
 from ltca.compliance import sliced
 from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
 from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse
-from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, PinShaft, PinWheel
 from ltca.drive.pin_beams import shaft_pin_beam
@@ -25,12 +25,11 @@ from ltca.laws.backed import (
     shaft_pin_seat,
     shaft_pin_stiffness,
     sleeve_overlap,
-    tip_share,
-    tip_slope,
+    tip_motion,
     wheel_pin_seat,
 )
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.generator_law import law_for_profile
+from ltca.laws.profiled_line_contact import law_for_profile
 from ltca.laws.spring import SpringLaw
 
 SAMPLES_PER_LOBE = 180
@@ -99,7 +98,7 @@ class HalfSpaceCompliance:
         In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
         that differ little have the same.
         """
-        geometry = replace(ContactGeometry.of_drive(drive), tip_share=tip_share(drive), tip_slope=tip_slope(drive))
+        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
         place, bearing, wheel, slices = geometry.placement, drive.crank_bearing, drive.pin_wheel, drive.contact.slices
         kinds, rigid, pin_radii = kinds or ContactKinds.of_drive(drive), False, np.ones(1)
         if slices == 1 and not wheel.pin_profile.is_cylinder:
@@ -168,7 +167,7 @@ class HalfSpaceCompliance:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
         place, kinds, rollers, laws = self.geometry.placement, self.kinds, response.rollers, self.roller_laws
         if response.leaning_pins is not None:
-            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SlicedSpring)
+            spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SeparateSlices)
             return pressures_in_slices(
                 response, kinds, place, rigid_shaft_pins=self.rigid_shaft_pins, shaft_pins_on_springs=spring
             )
@@ -202,11 +201,12 @@ def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = No
 
 def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:
     """Return the law of shaft pins on springs that stand for all that yields there, sleeves behind them, with a play, mm."""
-    stiffness, slices = shaft_pin_stiffness(drive), drive.contact.slices
+    spring, slices, width = SpringLaw(stiffness=shaft_pin_stiffness(drive)), drive.contact.slices, drive.disc.thickness
     if slices == 1:
-        return back_shaft_pins(drive, SpringLaw(stiffness=stiffness), play)
-    spring = sliced.SlicedSpring(stiffness=stiffness, length=drive.disc.thickness, slices=slices)
-    return sliced.back_line(spring, shaft_pin_seat(drive), play)
+        return back_shaft_pins(drive, spring, play)
+    relief = np.zeros(sliced.slice_heights(width, slices).shape)
+    springs = sliced.SeparateSlices(law=spring, length=width, slices=slices, relief=relief)
+    return sliced.back_line(springs, shaft_pin_seat(drive), play)
 
 
 def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:

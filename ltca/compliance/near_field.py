@@ -24,9 +24,9 @@ from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
 from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
 from ltca.compliance.solid_cylinder import free_ends_of_cylinder
+from ltca.contact.contact_kind import ContactKinds
 from ltca.contact.free_end import FreeEnds, guilbault_factor
 from ltca.contact.hertz import effective_radius, line_half_width
-from ltca.contact.tracked_grid import ContactKinds
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulus
@@ -34,7 +34,14 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.placement import Placement
-from ltca.laws.backed import HALF_SPACE_DATUM, back_wheel_pins, shaft_pin_seat, sleeve_overlap, wheel_pin_seat
+from ltca.laws.backed import (
+    HALF_SPACE_DATUM,
+    BackedLaw,
+    back_wheel_pins,
+    shaft_pin_seat,
+    sleeve_overlap,
+    wheel_pin_seat,
+)
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
@@ -108,12 +115,12 @@ class NearFieldLaws:
         at_hole = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins)
         # Only its logarithm enters, and cancels where the body part is in plane strain, too.
         datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
+        kinds = ContactKinds.of_drive(drive)
         if kind == "half-space":
-            kinds = ContactKinds.of_drive(drive)
             if solid and drive.contact.slices > 1:
                 kinds = kinds.with_free_ends(drive, rigid_shaft_pins=rigid_shaft_pins)
             half_space = HalfSpaceCompliance.of_drive(drive, kinds=kinds)
-            at_holes = replace(kinds.holes, contact_modulus=at_hole)
+            kinds = replace(half_space.kinds, holes=replace(kinds.holes, contact_modulus=at_hole))
             return cls(
                 kind=kind,
                 pin=half_space.pin_law,
@@ -121,25 +128,26 @@ class NearFieldLaws:
                 inner=half_space.roller_laws.inner,
                 hole=LineContactLaw(thickness, at_hole)
                 if drive.contact.slices == 1
-                else hole_in_slices(drive, at_holes, Placement.of_drive(drive).shaft_pin_plays),
+                else hole_in_slices(drive, kinds.holes, Placement.of_drive(drive).shaft_pin_plays),
                 rigid_shaft_pins=rigid_shaft_pins,
                 datum=datum,
-                kinds=half_space.kinds,
+                kinds=kinds,
             )
         require(drive, "fe")
         place, slices = Placement.of_drive(drive), drive.contact.slices
 
         def law(modulus: float, part: PinWheel | PinShaft | None = None) -> Any:
+            plane: ContactLaw = PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
             if slices == 1:
-                return PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
+                return plane
             z = sliced.slice_heights(thickness, slices)
-            return sliced.SlicedPlane(
+            if part is not None and part.seat.kind == "sleeve":
+                plane = BackedLaw(contact=plane, play=np.zeros(1), overlap=sleeve_overlap(drive, part, datum))
+            return sliced.SeparateSlices(
+                law=plane,
                 length=thickness,
-                contact_modulus=modulus,
-                datum=datum,
                 slices=slices,
                 relief=lead_relief(drive.disc, z) if part is drive.pin_wheel else np.zeros(z.shape),
-                overlap=0.0 if part is None or part.seat.kind != "sleeve" else sleeve_overlap(drive, part, datum),
             )
 
         flank, hole = law(contact_modulus(parts.disc, drive.flank_pin), drive.pin_wheel), law(at_hole, drive.pin_shaft)
@@ -156,7 +164,7 @@ class NearFieldLaws:
             hole=hole,
             rigid_shaft_pins=rigid_shaft_pins,
             datum=datum,
-            kinds=ContactKinds.of_drive(drive),
+            kinds=replace(kinds, holes=replace(kinds.holes, contact_modulus=at_hole)),
         )
 
     @property

@@ -19,8 +19,8 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.response import AlongWidth, ContactPressures, DiscResponse, KindPressures
+from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.tracked_grid import ContactKind, ContactKinds
 from ltca.geometry.placement import Placement
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw

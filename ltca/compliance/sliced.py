@@ -9,26 +9,23 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from ltca.laws.separate_slices import SeparateSlices
     from ltca.laws.sliced_contact import EXACT, ROUGH, Exactness, SlicedContact, slice_heights, slice_means
     from ltca.laws.sliced_line import SlicedLine
-    from ltca.laws.sliced_plane import SlicedPlane
     from ltca.laws.sliced_seat import SlicedSeat, back_line
-    from ltca.laws.sliced_spring import SlicedSpring
     from ltca.laws.width_pressure import estimate_along_width
 
 _HOMES = {
+    "ltca.laws.separate_slices": ("SeparateSlices",),
     "ltca.laws.sliced_contact": ("EXACT", "ROUGH", "Exactness", "SlicedContact", "slice_heights", "slice_means"),
     "ltca.laws.sliced_line": ("SlicedLine",),
-    "ltca.laws.sliced_plane": ("SlicedPlane",),
     "ltca.laws.sliced_seat": ("SlicedSeat", "back_line"),
-    "ltca.laws.sliced_spring": ("SlicedSpring",),
     "ltca.laws.width_pressure": ("estimate_along_width",),
 }
 
 __all__ = [
-    "EXACT", "ROUGH", "Exactness", "SlicedContact", "SlicedLine", "SlicedPlane", "SlicedSeat",
-    "SlicedSpring", "back_line", "estimate_along_width", "slice_heights", "slice_means",
-
+    "EXACT", "ROUGH", "Exactness", "SeparateSlices", "SlicedContact", "SlicedLine", "SlicedSeat", "back_line",
+    "estimate_along_width", "slice_heights", "slice_means",
 ]  # fmt: skip
 
 

@@ -7,13 +7,12 @@ influence       Influence coefficients of uniformly pressed rectangles on an ela
 unilateral      Frictionless unilateral contact: pressures that never pull and surfaces that never overlap
 free_end        Free ends: bodies that stop where the contact stops are no half-spaces
 pressure_cells  Contact of two half-spaces over a rectangular patch: grid, solution, loads and pressures
-grid_ladder     Shapes of the contact grids, in steps of half-width and reach
-tracked_grid    Kinds of contacts, separation of their surfaces, and the pressure of a contact on the grid that fits it
+contact_kind    Kinds of contacts of a drive, and the separation of their surfaces
+fitted_grid     Shapes of contact grids in steps of half-width and reach, and the pressure on the one that fits a contact
 tilted_grid     Contacts that tilt, on grids over their whole width: load and moment by approach and tilt
 end_pressure    The largest pressure of a contact and its ratio to that at mid-width
 subsurface      Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929)
-hertz           Reference solutions of smooth elastic contact: line contact, approach of finite bodies, elliptical
-                point contact
+hertz           Hertz' line contact: half-width and peak pressure by the load
 round_bodies    Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races
 ==============  ============================================================
 """

@@ -1,7 +1,7 @@
 """The largest pressure of a contact and its ratio to that at mid-width.
 
 At the end of an unrelieved roller the half-space pressure is singular: on a grid it depends on the end cell. So the largest
-pressure is defined as the largest mean over a hundredth of the length (`ltca.contact.tracked_grid.ContactKind.end_cell`),
+pressure is defined as the largest mean over a hundredth of the length (`ltca.contact.contact_kind.ContactKind.end_cell`),
 on any grid. For cylinders its ratio to mid-width is a function of L/√(ρδ) alone; profiled contacts are sampled over the
 approaches and radii that occur.
 """
@@ -15,8 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.contact.pressure_cells import PatchSolution, expected_half_width
-from ltca.contact.tracked_grid import CELLS, ContactKind, solve_fitted
+from ltca.contact.contact_kind import CELLS, ContactKind
+from ltca.contact.fitted_grid import solve_fitted
+from ltca.contact.pressure_cells import PatchPressure, expected_half_width
 
 TABLE = Path(__file__).with_name("end_pressure.json")
 _NODES = 19
@@ -25,7 +26,7 @@ _APPROACHES, _RADII = 9, 3
 _LIGHTEST = 1e-2  # by the largest approach: lighter contacts take the ratio there
 
 
-def largest_pressure(solved: PatchSolution, stretch: float) -> float:
+def largest_pressure(solved: PatchPressure, stretch: float) -> float:
     """Return the largest pressure of a patch symmetric about mid-width as a mean over a stretch along the width, mm, in MPa.
 
     It is at least the pressure at mid-width.
@@ -58,7 +59,7 @@ def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
 
 @cache
 def _cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and ratio as they ship with the package (made by `ltca.laws.shipped_tables`); solved for other numbers of cells."""
+    """Nodes and ratio as they ship with the package (made by `validation.shipped_tables`); solved for other numbers of cells."""
     if cells != CELLS:
         return tabulate_cylinder_ratio(cells)
     stored = json.loads(TABLE.read_text(encoding="utf-8"))

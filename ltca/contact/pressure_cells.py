@@ -20,12 +20,12 @@ import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.influence import assemble_influence_matrix
-from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
+from ltca.contact.unilateral import solve_unilateral_contact
 
 ReliefFunction = Callable[[FloatArray], FloatArray]
 
-# Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width.
-_ROOM = 1.6
+GRID_ROOM = 1.6
+"""Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width."""
 # The edge of a short patch lies beyond 2√⟨x²⟩ by this over λ (measured for λ from 0.25 to 1; negligible above).
 _SHORT_EDGE = 0.007
 # Errors of constant cells for a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
@@ -78,7 +78,7 @@ class PatchGrid:
         cls, length: float, half_width: float, *, cells: int, grading: float, end_factor: float = 0.0
     ) -> PatchGrid:
         """Return a quarter grid: `cells` over the expected half-width, with room for bulging ends, and over half the length."""
-        count = int(np.ceil(_ROOM * cells))
+        count = int(np.ceil(GRID_ROOM * cells))
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
             y_edges=graded_edges(length, cells, grading),
@@ -86,18 +86,9 @@ class PatchGrid:
             end_factor=end_factor,
         )
 
-    def whole(self) -> PatchGrid:
-        """Return the same grid without symmetry."""
-        half = self.half()
-        y = half.y_edges
-        edges = np.concatenate([-y[:0:-1], y]) if half.symmetric_y else y
-        return replace(half, y_edges=edges, symmetric_y=False)
-
-    def half(self) -> PatchGrid:
-        """Return the same grid without symmetry along x: for flanks, whose separation is not even."""
-        x = self.x_edges
-        edges = np.concatenate([-x[:0:-1], x]) if self.symmetric_x else x
-        return replace(self, x_edges=edges, symmetric_x=False)
+    def scaled(self, size: float) -> PatchGrid:
+        """Return the same grid so many times as large."""
+        return replace(self, x_edges=self.x_edges * size, y_edges=self.y_edges * size, end_plane=self.end_plane * size)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -108,11 +99,6 @@ class PatchGrid:
     def images(self) -> int:
         """Number of images of the grid in the whole patch: 1, 2 or 4."""
         return (2 if self.symmetric_x else 1) * (2 if self.symmetric_y else 1)
-
-    @property
-    def end_cell(self) -> float:
-        """Length of the last cell in y, on which the pressure at an unrelieved end depends, mm."""
-        return float(self.y_edges[-1] - self.y_edges[-2])
 
     @cached_property
     def areas(self) -> FloatArray:
@@ -151,35 +137,25 @@ class PatchGrid:
         return np.asarray(np.einsum("iajb,a,b->ij", values, _GAUSS_WEIGHTS, _GAUSS_WEIGHTS) / 4.0)
 
 
-@dataclass(frozen=True)
-class PatchSolution:
-    """Pressure over a patch at a given approach.
+@dataclass(frozen=True, kw_only=True)
+class PatchPressure:
+    """Pressure over a patch.
 
     Attributes
     ----------
     grid : PatchGrid
         The grid it was solved on.
-    approach : float
-        Approach of distant points, mm.
     pressure : ndarray, shape (nx, ny)
         Mean pressure of each cell, MPa.
-    load : float
-        Normal load of the whole patch, N.
-    stiffness : float
-        dF/dδ with the contact cells held, the exact tangent of the discrete load, N/mm.
-    energy : float
-        ∫ F dδ, N·mm.
-    solution : UnilateralSolution
-        The complementarity solution behind it.
     """
 
     grid: PatchGrid
-    approach: float
     pressure: FloatArray
-    load: float
-    stiffness: float
-    energy: float
-    solution: UnilateralSolution
+
+    @property
+    def load(self) -> float:
+        """Normal load of the whole patch, N."""
+        return self.grid.images * float(self.pressure.ravel() @ self.grid.areas.ravel())
 
     @property
     def contact(self) -> BoolArray:
@@ -232,11 +208,6 @@ class PatchSolution:
         # A cell's value stands for its centre, half a cell from the edge, up to the same bias as above.
         return float(centre + (0.125 - _PEAK_BIAS) * bend + crest)
 
-    @property
-    def max_pressure(self) -> float:
-        """Largest cell pressure, MPa; at unrelieved ends it depends on ``grid.end_cell``."""
-        return float(np.max(self.pressure))
-
     def _at_mid_width(self, field: FloatArray) -> FloatArray:
         """Values at y = 0 from the cell means next to it, by a parabola across mid-width."""
         y = self.grid.y_edges
@@ -257,6 +228,19 @@ class PatchSolution:
         return np.asarray(np.maximum(field[:, cells] @ weights, 0.0))
 
 
+@dataclass(frozen=True, kw_only=True)
+class PatchSolution(PatchPressure):
+    """Pressure over a patch at a given approach.
+
+    Attributes
+    ----------
+    energy : float
+        ∫ F dδ, N·mm.
+    """
+
+    energy: float
+
+
 def solve_patch(
     grid: PatchGrid,
     separation: FloatArray,
@@ -271,24 +255,15 @@ def solve_patch(
     E*, MPa; `start` are initial contact cells, by default those where the undeformed bodies overlap. Arrays have the shape (nx,
     ny). ConvergenceError if the contact set does not settle.
     """
-    areas = grid.areas.ravel()
-    scale = 1.0 / (np.pi * contact_modulus)
+    penetration = (approach - separation.ravel()) * grid.areas.ravel()
     solution = solve_unilateral_contact(
         grid.influence,
-        (approach - separation.ravel()) * areas / scale,
+        penetration / (1.0 / (np.pi * contact_modulus)),
         start=None if start is None else start.ravel(),
-        load_direction=areas / scale,
     )
     pressure = solution.pressure
-    return PatchSolution(
-        grid=grid,
-        approach=approach,
-        pressure=pressure.reshape(grid.shape),
-        load=grid.images * float(pressure @ areas),
-        stiffness=grid.images * float(solution.rate @ areas),
-        energy=0.5 * grid.images * float(pressure @ ((approach - separation.ravel()) * areas)),
-        solution=solution,
-    )
+    energy = 0.5 * grid.images * float(pressure @ penetration)
+    return PatchSolution(grid=grid, pressure=pressure.reshape(grid.shape), energy=energy)
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
@@ -370,6 +345,21 @@ def solve_cylinder_patch(
             if settled:
                 break
     return solve_on(half_width, cells, start)
+
+
+def extrapolate(
+    solve: Callable[..., PatchSolution], cells: int, half_width: float, energy_gain: float, field_gain: float
+) -> tuple[float, ...]:
+    """Return energy, load, mid-width pressure and half-width of a contact on cells of no size (Richardson), from two grids.
+
+    `solve` takes `cells`, `half_width` and `start` as `solve_cylinder_patch`: both grids cut the contact at the same place. A
+    gain 1/(2ᵖ − 1) belongs to the order of convergence p, that of energy and load or that of pressure and half-width.
+    """
+    coarse = solve(cells=cells // 2, half_width=half_width)
+    fine = solve(cells=cells, half_width=half_width, start=coarse)
+    gains = {"energy": energy_gain, "load": energy_gain, "mid_pressure": field_gain, "half_width": field_gain}
+    pairs = ((getattr(fine, name), getattr(coarse, name), gain) for name, gain in gains.items())
+    return tuple(value + gain * (value - before) for value, before, gain in pairs)
 
 
 def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
-from ltca.contact.pressure_cells import PatchSolution
+from ltca.contact.pressure_cells import PatchPressure
 
 _DEPTHS = 48
 
@@ -63,7 +63,7 @@ def rectangle_stress(
 
 
 def patch_stress(
-    solution: PatchSolution, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float
+    solution: PatchPressure, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float
 ) -> FloatArray:
     """Return the stress tensor at points x, y and depth > 0, mm, below a solved patch, as `rectangle_stress`, MPa.
 
@@ -118,7 +118,7 @@ class SubsurfaceShear:
     x: float
 
 
-def find_subsurface_shear(solution: PatchSolution, poisson_ratio: float) -> SubsurfaceShear:
+def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> SubsurfaceShear:
     """Return the largest shear stress on the normal through the pressure peak at mid-width, and its depth.
 
     Depths from 0.2 to 2.5 half-widths are scanned and the maximum is refined by a parabola. ν is that of the body in which the

@@ -1,6 +1,6 @@
 """Contacts that tilt, solved on grids over their whole width: load and moment by approach and tilt, with derivatives.
 
-As `ltca.contact.tracked_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
+As `ltca.contact.fitted_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
 where the undeformed surfaces overlap, [z₁, z₂]: no contact reaches beyond. It moves steadily with approach and tilt, and so do
 load and moment; only widths are on a ladder (every second rung, blended), whose matrices serve patches of every length. Cells
 shrink toward an end of the line that carries more than toward one that the contact does not reach; near the boundary of the two
@@ -13,16 +13,16 @@ needs no further factorisation.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray, freeze
-from ltca.contact.grid_ladder import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step
-from ltca.contact.pressure_cells import PatchGrid, expected_half_width, graded_edges
-from ltca.contact.tracked_grid import ContactKind, Separation
+from ltca.contact.contact_kind import ContactKind, Separation
+from ltca.contact.fitted_grid import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step, unit_separations
+from ltca.contact.pressure_cells import PatchGrid, PatchPressure, expected_half_width, graded_edges
 from ltca.contact.unilateral import solve_unilateral_contact
 
 STEP = 2.0 * RUNG
@@ -35,7 +35,6 @@ KEPT = 24
 """Matrices kept, 7 MB each for flanks."""
 SAMPLES = 201
 """Heights at which the ends of the overlap are looked for before they are refined."""
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class GridShape(NamedTuple):
@@ -64,6 +63,11 @@ class Patch(NamedTuple):
         """Its middle, mm."""
         return 0.5 * (self.lower + self.upper)
 
+    def closing(self, approach: float, tilt: float, separation: Separation) -> FloatArray:
+        """Return the approach in the middle by the length, the tilt, and the weights of a separation, negative."""
+        middle = (approach + tilt * self.middle) / self.length
+        return np.concatenate(((middle, tilt), -separation.weights))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TiltedPiece:
@@ -74,15 +78,14 @@ class TiltedPiece:
     shape : GridShape
         Of the grid.
     place : int
-        Place of the separation, see `ltca.contact.tracked_grid.Separation`.
+        Place of the separation, see `ltca.contact.contact_kind.Separation`.
     patch : Patch
         Where it lies; its depth does not matter.
     active : array of bool, shape (cells,)
         Contact cells.
-    rate, opening_rate : array, shape (cells, 2)
-        Pressure by E*, and opening, per approach in the middle of the patch by its length, and per tilt.
-    taken, opening_taken : array, shape (cells, places)
-        Both due to the separation at each place, to be subtracted.
+    rate, opening_rate : array, shape (cells, 2 + places)
+        Pressure by E*, and opening, per approach in the middle of the patch by its length, per tilt, and per separation at each
+        place, by which it is less.
     """
 
     shape: GridShape
@@ -91,22 +94,19 @@ class TiltedPiece:
     active: BoolArray
     rate: FloatArray
     opening_rate: FloatArray
-    taken: FloatArray
-    opening_taken: FloatArray
 
-    def pressure(self, closing: FloatArray, weights: FloatArray) -> FloatArray:
-        """Return pressures by E*."""
-        return np.asarray(self.rate @ closing - self.taken[:, : weights.size] @ weights)
+    def pressure(self, closing: FloatArray) -> FloatArray:
+        """Return pressures by E*, from approach and tilt as above and the weights of the places, negative."""
+        return np.asarray(self.rate[:, : closing.size] @ closing)
 
-    def holds(self, closing: FloatArray, weights: FloatArray, slack: float) -> bool:
+    def holds(self, closing: FloatArray, slack: float) -> bool:
         """Return whether the same cells touch: no tension inside, no overlap outside."""
-        if self.taken.shape[1] < weights.size:
+        if self.rate.shape[1] < closing.size:
             return False
-        pressure = self.pressure(closing, weights)
+        pressure = self.pressure(closing)
         if np.min(pressure) < -1e-11 * np.max(pressure):
             return False
-        opening = self.opening_rate @ closing - self.opening_taken[:, : weights.size] @ weights
-        return bool(np.min(opening) >= -slack)
+        return bool(np.min(self.opening_rate[:, : closing.size] @ closing) >= -slack)
 
 
 TiltedPieces = tuple[TiltedPiece, ...]
@@ -127,26 +127,6 @@ class TiltedPress(NamedTuple):
     edges: FloatArray
     line_load: FloatArray
     pieces: TiltedPieces
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TiltedPatch:
-    """Pressure over a patch.
-
-    Attributes
-    ----------
-    x_edges, z_edges : array
-        Edges of the cells along the profile (from 0 where symmetric) and along the width, mm.
-    pressure : array, shape (nx, nz)
-        Mean pressure of each cell, MPa.
-    symmetric : bool
-        Whether the cells are the positive half along the profile.
-    """
-
-    x_edges: FloatArray
-    z_edges: FloatArray
-    pressure: FloatArray
-    symmetric: bool
 
 
 @lru_cache(maxsize=KEPT)
@@ -231,7 +211,7 @@ def press_tilted(
 
 def recover_tilted(
     kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
-) -> TiltedPatch | None:
+) -> PatchPressure | None:
     """Return the pressure over a contact on the grid that fits it best, None where it is open; as for `press_tilted`."""
     patch = find_patch(kind, approach, tilt)
     if patch is None:
@@ -240,23 +220,14 @@ def recover_tilted(
     shape = max(shares, key=lambda each: shares[each])
     piece = _settle(kind, shape, patch, separation, approach, tilt, start)
     grid = whole_grid(shape, kind.cells, kind.symmetric)
-    closing = np.array(((approach + tilt * patch.middle) / patch.length, tilt))
-    pressure = np.maximum(piece.pressure(closing, separation.weights), 0.0).reshape(grid.shape)
-    return TiltedPatch(
-        x_edges=grid.x_edges * patch.length,
-        z_edges=patch.middle + grid.y_edges * patch.length,
-        pressure=kind.contact_modulus * pressure,
-        symmetric=kind.symmetric,
-    )
-
-
-def _width_place(patch: Patch, effective_radius: float) -> float:
-    """ln(expected half-width/length of the patch) in steps of the ladder."""
-    return float(np.log(expected_half_width(patch.length, effective_radius, patch.depth) / patch.length)) / STEP
+    pressure = np.maximum(piece.pressure(patch.closing(approach, tilt, separation)), 0.0).reshape(grid.shape)
+    placed = replace(grid.scaled(patch.length), y_edges=patch.middle + grid.y_edges * patch.length)
+    return PatchPressure(grid=placed, pressure=kind.contact_modulus * pressure)
 
 
 def _find_shares(patch: Patch, effective_radius: float) -> dict[GridShape, float]:
-    place = _width_place(patch, effective_radius)
+    half_width = expected_half_width(patch.length, effective_radius, patch.depth)
+    place = float(np.log(half_width / patch.length)) / STEP
     below = int(np.floor(place))
     above = smooth_step((place - below - 0.5) / BLEND + 0.5)
     lower, upper = (smooth_step(end / END_DEPTH) for end in patch.at_ends)
@@ -275,25 +246,18 @@ def _press_piece(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Load, moment, ∂F/∂δ, ∂F/∂θ, ∂M/∂θ and energy on one grid; edges along the width and line loads."""
     patch, grid = piece.patch, whole_grid(piece.shape, kind.cells, kind.symmetric)
-    length, weights = patch.length, separation.weights
-    closing = np.array(((approach + tilt * patch.middle) / length, tilt))
-    areas = grid.areas
-    pressure = np.maximum(piece.pressure(closing, weights), 0.0)
+    length, flat = patch.length, grid.areas.ravel()
+    pressure = np.maximum(piece.pressure(patch.closing(approach, tilt, separation)), 0.0)
     scale = grid.images * kind.contact_modulus * length**2
     # About the middle of the width, mm.
-    arm = (patch.middle + length * grid.y_centres) * np.ones(grid.shape)
-    flat = areas.ravel()
-    load, moment = scale * (pressure @ flat), scale * (pressure @ (flat * arm.ravel()))
+    arm = np.tile(patch.middle + length * grid.y_centres, grid.shape[0])
     # The rates are by δ/length in the middle of the patch and by θ about it.
     by_approach = piece.rate[:, 0] / length
     by_tilt = piece.rate[:, 1] + piece.rate[:, 0] * (patch.middle / length)
-    arms = flat * arm.ravel()
-    gap = (_unit_separations(kind, piece.shape, patch, separation) @ weights) * length
-    penetration = approach + tilt * arm.ravel() - gap
-    numbers = np.array(
-        (load, moment, scale * (by_approach @ flat), scale * (by_tilt @ flat), scale * (by_tilt @ arms),
-         0.5 * scale * (pressure @ (penetration * flat)))
-    )  # fmt: skip
+    gap = (unit_separations(grid, separation, length, kind.relief, patch.middle) @ separation.weights) * length
+    pairs = ((pressure, 1.0), (pressure, arm), (by_approach, 1.0), (by_tilt, 1.0), (by_tilt, arm),
+             (0.5 * pressure, approach + tilt * arm - gap))  # fmt: skip
+    numbers = np.array([scale * (values @ (flat * weight)) for values, weight in pairs])
     line = grid.images * kind.contact_modulus * length * (np.diff(grid.x_edges) @ pressure.reshape(grid.shape))
     return numbers, patch.middle + length * grid.y_edges, line
 
@@ -309,22 +273,16 @@ def _settle(
 ) -> TiltedPiece:
     """Return the piece of one grid that holds: one of `start` if it does, otherwise solved from it."""
     grid = whole_grid(shape, kind.cells, kind.symmetric)
-    weights, areas = separation.weights, np.pi * grid.areas.ravel()
-    closing = np.array(((approach + tilt * patch.middle) / patch.length, tilt))
-    active = None
+    areas, closing, active = np.pi * grid.areas.ravel(), patch.closing(approach, tilt, separation), None
     for piece in start:
         if piece.shape == shape:
             active = piece.active
             slack = 1e-13 * float(np.max(areas)) * patch.depth / patch.length
-            if (
-                piece.place == separation.place
-                and piece.patch[:2] == patch[:2]
-                and piece.holds(closing, weights, slack)
-            ):
+            if piece.place == separation.place and piece.patch[:2] == patch[:2] and piece.holds(closing, slack):
                 return piece
-    units = _unit_separations(kind, shape, patch, separation)
+    units = unit_separations(grid, separation, patch.length, kind.relief, patch.middle)
     arm = np.tile(grid.y_centres, grid.shape[0])
-    penetration = closing[0] + closing[1] * arm - units @ weights
+    penetration = closing[0] + closing[1] * arm - units @ separation.weights
     if active is None:
         near = [piece for piece in start if abs(piece.shape.step - shape.step) <= 1]
         active = near[0].active if near else penetration > 0.5 * np.max(penetration)
@@ -334,29 +292,6 @@ def _settle(
     opening = grid.influence[:, inside] @ found.rate[inside] - directions
     opening[inside] = 0.0
     piece = TiltedPiece(
-        shape=shape,
-        place=separation.place,
-        patch=patch,
-        active=found.active,
-        rate=found.rate[:, :2],
-        opening_rate=opening[:, :2],
-        taken=found.rate[:, 2:],
-        opening_taken=opening[:, 2:],
+        shape=shape, place=separation.place, patch=patch, active=found.active, rate=found.rate, opening_rate=opening
     )
     return freeze(piece)
-
-
-def _unit_separations(kind: ContactKind, shape: GridShape, patch: Patch, separation: Separation) -> FloatArray:
-    """Mean separation of every cell at the places of a separation, by the length of the patch, shape (cells, places)."""
-    grid, length = whole_grid(shape, kind.cells, kind.symmetric), patch.length
-    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
-    across = np.stack(
-        [
-            separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
-            for number in range(separation.weights.size)
-        ],
-        axis=-1,
-    )
-    heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-    along = kind.relief(patch.middle + length * heights) @ _WEIGHTS / (2.0 * length)
-    return np.asarray((across[:, None] + along[None, :, None]).reshape(-1, separation.weights.size))

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from ltca.analysis.summary import LOADED_FRACTION
 from ltca.arrays import FloatArray
-from ltca.contact.tracked_grid import END_STRETCH
+from ltca.contact.contact_kind import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.figures.curve_panels import MOST_CURVES, TWO_COLUMNS_FROM, draw_panels, name_panel

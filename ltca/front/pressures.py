@@ -10,7 +10,7 @@ import xarray as xr
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.pressure_fields import CONTACTS, FIELD_CELLS, is_loaded, loads_of, pressure_field
 from ltca.arrays import FloatArray
-from ltca.contact.tracked_grid import END_STRETCH
+from ltca.contact.contact_kind import END_STRETCH
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.front.arguments import angles_given, counted
 

@@ -10,14 +10,10 @@ slenderness_curve      Smooth curves over the slenderness of a line contact: qui
 line_contact           Load–approach law of an uncrowned line contact between two half-spaces
 sliced_contact         What contacts in slices carry, whatever their law, and where a neighbour starts from
 sliced_line            Line contacts in slices along their width: load and moment by approach and tilt
-sliced_spring          Springs even along the width, in slices
-sliced_plane           Plane strain in slices that do not feel each other
-between_contacts       Newton's steps of parts between contacts in slices: place and lean where forces and moments balance
+separate_slices        Contacts in slices that do not feel each other: a law of the plane at every height
 sliced_seat            Conforming seats in slices behind a contact
 width_pressure         Pressures along the width, from slices and from grids that tilt
-shipped_tables         Makes the tables of cylinders that ship with the package
 profiled_line_contact  Load–approach law of line contacts that are crowned or relieved along their length
-generator_law          The tabulated law of a roller or pin, with the profile along its length that the drive defines
 plane_strain           Load–approach law of a line contact in plane strain, with a datum
 seats                  Conforming seats: contact over a given arc, series over the load, the wall of a sleeve
 conforming             A pin in a bore that is hardly larger: arc, pressure and approach, with a datum; a sleeve

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.beam import PinBeam
-from ltca.drive.parts import Drive, PinShaft, PinWheel
+from ltca.drive.parts import Drive, Material, PinShaft, PinWheel
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.errors import ConvergenceError
 from ltca.laws.conforming import ConformingLaw
@@ -60,7 +60,7 @@ class BackedLaw(ContactLaw):
     """
 
     contact: ContactLaw
-    seat: ConformingLaw | None
+    seat: ConformingLaw | None = None
     play: FloatArray = by_drive(1)
     flexibility: float = 0.0
     overlap: float = 0.0
@@ -159,16 +159,6 @@ class BackedLaw(ContactLaw):
                 held = held + 2.0 * weight * point * np.maximum(near, 0.0) * off * stiffness
         return np.asarray(self.contact.energy(near, effective_radius) + held)
 
-    def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Return the largest pressure of the surfaces at mid-width, MPa."""
-        law, near = self.surface(approach, effective_radius)
-        return law.mid_pressure(near, effective_radius)
-
-    def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
-        """Return the contact half-width at mid-width, mm."""
-        law, near = self.surface(approach, effective_radius)
-        return law.half_width(near, effective_radius)
-
 
 def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
     """Return the law of the wheel pins of a drive of one disc (`ltca.drive.single_discs`): contact, seats and beams in series.
@@ -218,20 +208,16 @@ def shaft_pin_stiffness(drive: Drive) -> float:
     return drive.hole_stiffness if beam is None else 1.0 / own_flexibility(drive, beam)
 
 
-def tip_share(drive: Drive) -> float:
-    """Return the displacement of a shaft pin at the disc per displacement of its tip by the ring; 0 without ring."""
+def tip_motion(drive: Drive) -> dict[str, Any]:
+    """Return the displacement of a shaft pin at the disc, and its lean, 1/mm, per displacement of its tip by the ring.
+
+    They are `tip_share` and `tip_slope` of `ltca.geometry.pairs.ContactGeometry`; nothing without ring, no lean without slices.
+    """
     beam = shaft_pin_beam(drive)
     if beam is None or beam.ends[1] == "free":
-        return 0.0
-    return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness)[0])
-
-
-def tip_slope(drive: Drive) -> float:
-    """Return the lean of a shaft pin at the disc per displacement of its tip by the ring, 1/mm; 0 without ring or slices."""
-    beam = shaft_pin_beam(drive)
-    if beam is None or beam.ends[1] == "free" or drive.contact.slices == 1:
-        return 0.0
-    return float(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness, slopes=True)[1])
+        return {}
+    share, slope = beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness, slopes=True)[:2]
+    return {"tip_share": float(share), "tip_slope": 0.0 if drive.contact.slices == 1 else float(slope)}
 
 
 def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
@@ -243,23 +229,15 @@ def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
 
 def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
     """Return the law of the sleeves on the shaft pins of a drive of one disc; None without sleeves."""
-    shaft, parts = drive.pin_shaft, drive.materials
+    shaft = drive.pin_shaft
     if shaft is None or shaft.seat.kind == "fixed":
         return None
-    return ConformingLaw.of_sleeve(
-        pin=parts.shaft_pin,
-        sleeve=parts.sleeve,
-        pin_radius=shaft.seat.pin_radius or 0.0,
-        bore_radius=shaft.seat.bore_radius or 0.0,
-        outer_radius=shaft.pin_radius,
-        datum=_datum(drive, shaft),
-        length=drive.disc.thickness,
-    )
+    return _sleeve_seat(drive, shaft, drive.materials.shaft_pin)
 
 
 def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
     """Return the law of the wheel pins in their slots, or of their sleeves, of a drive of one disc; None for fixed pins."""
-    wheel, parts, length = drive.pin_wheel, drive.materials, drive.disc.thickness
+    wheel, parts = drive.pin_wheel, drive.materials
     if wheel.seat.kind == "slot":
         radius = wheel.seat.radius or 0.0
         return ConformingLaw.of_bodies(
@@ -268,16 +246,19 @@ def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
             pin_radius=wheel.pin_radius,
             bore_radius=radius,
             datum_radius=SLOT_DATUM * radius,
-            length=length,
+            length=drive.disc.thickness,
         )
-    if wheel.seat.kind == "sleeve":
-        return ConformingLaw.of_sleeve(
-            pin=parts.wheel_pin,
-            sleeve=parts.sleeve,
-            pin_radius=wheel.seat.pin_radius or 0.0,
-            bore_radius=wheel.seat.bore_radius or 0.0,
-            outer_radius=wheel.pin_radius,
-            datum=_datum(drive, wheel),
-            length=length,
-        )
-    return None
+    return _sleeve_seat(drive, wheel, parts.wheel_pin) if wheel.seat.kind == "sleeve" else None
+
+
+def _sleeve_seat(drive: Drive, part: PinWheel | PinShaft, pin: Material) -> ConformingLaw:
+    """Law of the sleeves on pins of a material."""
+    return ConformingLaw.of_sleeve(
+        pin=pin,
+        sleeve=drive.materials.sleeve,
+        pin_radius=part.seat.pin_radius or 0.0,
+        bore_radius=part.seat.bore_radius or 0.0,
+        outer_radius=part.pin_radius,
+        datum=_datum(drive, part),
+        length=drive.disc.thickness,
+    )

@@ -128,13 +128,7 @@ class ConformingLaw:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
         seat = _Seat.of_bodies(pin, bore, pin_radius, bore_radius, length)
         yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / bore_radius) + 0.5
-        return cls(
-            length=length,
-            radius=seat.radius,
-            contact_modulus=seat.modulus,
-            first_harmonic=float((seat.first + yielding * seat.part) / np.pi),
-            series=conforming_series(seat.mismatch, seat.breathing),
-        )
+        return cls._of_seat(seat, length, yielding)
 
     @classmethod
     def of_sleeve(
@@ -163,12 +157,19 @@ class ConformingLaw:
         kappa, ratio = round(seat.kappa, 12), round(bore_radius / outer_radius, 12)
         wall = sleeve_wall(kappa, ratio)
         yielding = wall.own[1] - wall.back[1] + (kappa + 1.0) * np.log(outer_radius / datum)
+        return cls._of_seat(seat, length, yielding, (kappa, ratio, seat.part))
+
+    @classmethod
+    def _of_seat(
+        cls, seat: _Seat, length: float, yielding: float, *sleeve: tuple[float, float, float]
+    ) -> ConformingLaw:
+        """The law of a seat of which the body around the pin yields that much by the first harmonic, in its E*/4μ."""
         return cls(
             length=length,
             radius=seat.radius,
             contact_modulus=seat.modulus,
             first_harmonic=float((seat.first + yielding * seat.part) / np.pi),
-            series=conforming_series(seat.mismatch, seat.breathing, (kappa, ratio, seat.part)),
+            series=conforming_series(seat.mismatch, seat.breathing, *sleeve),
         )
 
     def _place(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:

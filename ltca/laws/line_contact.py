@@ -6,13 +6,13 @@ serves every pin and roller. The table holds the energy U = ∫F dδ = E* L δ²
 is smooth and nearly linear in X for long contacts, the load and the stiffness are exact derivatives of one
 function (what an equilibrium solver by minimum potential needs), and the energy is closed.
 
-The table ships with the package as ``line_contact.json``; `ltca.laws.shipped_tables` makes it.
+The table ships with the package as ``line_contact.json``; `validation.shipped_tables` makes it.
 """
 
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ltca.arrays import BoolArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.slenderness_curve import SlendernessCurve
 
@@ -48,24 +48,20 @@ class LineContactTable:
     inverse_square_pressure: SlendernessCurve
     inverse_square_half_width: SlendernessCurve
 
-    @classmethod
-    def of_content(cls, content: dict[str, dict[str, Any]]) -> LineContactTable:
-        """Return the table of which `content` gave these plain numbers, to the last bit."""
-        return cls(**{name: SlendernessCurve.of_content(curve) for name, curve in content.items()})
-
-    def content(self) -> dict[str, dict[str, Any]]:
-        """Return the curves by name as plain numbers, for a file."""
-        return {item.name: getattr(self, item.name).content() for item in fields(self)}
-
 
 @cache
 def line_contact_table() -> LineContactTable:
     """Return the dimensionless table that ships with the package (read once in the process).
 
-    `ltca.laws.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
+    `validation.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
     the machine.
     """
-    return LineContactTable.of_content(json.loads(TABLE.read_text(encoding="utf-8")))
+    stored = json.loads(TABLE.read_text(encoding="utf-8"))
+    curves = {
+        name: SlendernessCurve(**curve | {"coefficients": np.array(curve["coefficients"])})
+        for name, curve in stored.items()
+    }
+    return LineContactTable(**curves)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,14 +84,11 @@ class LineContactLaw(ContactLaw):
     contact_modulus: float | FloatArray
     table: LineContactTable = field(default_factory=line_contact_table)
 
-    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """Approach (zero where open), X (0 approach replaced by 1 mm where open) and the mask of closed contacts."""
+    def _place(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Approach, zero where open, and X, that of 1 mm where open."""
         delta = np.asarray(approach, dtype=float)
-        radius = np.asarray(effective_radius, dtype=float)
-        closed = delta > 0.0
-        pressed = np.where(closed, delta, 0.0)
-        square = self.length * self.length
-        return pressed, np.log(np.where(closed, delta, 1.0) * radius / square), closed
+        product = np.where(delta > 0.0, delta, 1.0) * np.asarray(effective_radius, dtype=float)
+        return np.maximum(delta, 0.0), np.log(product / (self.length * self.length))
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load (Eq. 67–68, 84) and its exact derivative by the approach, N and N/mm."""
@@ -132,19 +125,19 @@ class LineContactLaw(ContactLaw):
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """∫ F dδ in closed form, N·mm."""
-        pressed, place, _ = self._place(approach, effective_radius)
+        pressed, place = self._place(approach, effective_radius)
         scale = self.contact_modulus * self.length
         return np.asarray(scale * pressed**2 / self.table.inverse_energy.value(place))
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Largest pressure at mid-width, MPa."""
-        pressed, place, _ = self._place(approach, effective_radius)
+        pressed, place = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_pressure.value(place)
         radius = np.asarray(effective_radius, dtype=float)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / (radius * ratio)))
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Contact half-width at mid-width, 2 √⟨x²⟩ with the pressure as weight, mm."""
-        pressed, place, _ = self._place(approach, effective_radius)
+        pressed, place = self._place(approach, effective_radius)
         ratio = self.table.inverse_square_half_width.value(place)
         return np.asarray(np.sqrt(pressed * np.asarray(effective_radius, dtype=float) / ratio))

@@ -12,17 +12,19 @@ Beyond the table m goes on as a straight line: a power law, which is what a crow
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import BoolArray, FloatArray
-from ltca.contact.pressure_cells import PatchSolution, end_grading, solve_cylinder_patch
+from ltca.contact.pressure_cells import PatchSolution, end_grading, extrapolate, solve_cylinder_patch
+from ltca.drive.parts import LengthProfile
 from ltca.errors import CycloError
-from ltca.geometry.length_profile import Relief
+from ltca.geometry.length_profile import Relief, generator_profile
 from ltca.laws.contact_law import ContactLaw
-from ltca.laws.slenderness_curve import quintic_hermite_pieces, quintic_spline_pieces
+from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.slenderness_curve import quintic, quintic_hermite_pieces, quintic_spline_pieces
 
 LIGHTEST = 2.0e4
 HEAVIEST = 2.0
@@ -32,6 +34,8 @@ _CELLS = 16
 # Orders measured with both cell counts doubled: energy 3, fields 2 (smooth ends: no singularity spoils them).
 _ENERGY_GAIN = 1.0 / (2.0**3 - 1.0)
 _FIELD_GAIN = 1.0 / (2.0**2 - 1.0)
+LADDER_RATIO = 1.25
+"""Ratio of neighbouring ends of the ranges of radii for which tables of profiled parts are made in a batch."""
 # Grading of a contact that ends inside the profile, where pressure falls to zero by itself.
 _FREE_GRADING = 1.25
 
@@ -127,13 +131,8 @@ def profiled_table(
         for column, place in enumerate(places):
             approach = float(length**2 * np.exp(place) / radius)
             guess = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells // 2)
-            width = guess.half_width
-            coarse = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells // 2, half_width=width)
-            fine = solve_profiled_patch(profile, radius, 1.0, approach, cells=cells, half_width=width, start=coarse)
-            energy = fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)
-            load = fine.load + _ENERGY_GAIN * (fine.load - coarse.load)
-            pressure = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
-            half_width = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
+            solve = partial(solve_profiled_patch, profile, radius, 1.0, approach)
+            energy, load, pressure, half_width = extrapolate(solve, cells, guess.half_width, _ENERGY_GAIN, _FIELD_GAIN)
             radius_values[0, column] = -np.log(energy / (length * approach**2))
             radius_values[1, column] = np.log(pressure * np.sqrt(radius / approach))
             radius_values[2, column] = np.log(half_width / np.sqrt(radius * approach))
@@ -250,14 +249,11 @@ class ProfiledLineContactLaw(ContactLaw):
         piece = np.minimum(inside.astype(np.intp), count - 1)
         t = inside - piece
         total = [np.zeros_like(t) for _ in range(3)]
-        weights: list[FloatArray] | list[float] = [1.0]
-        if table.log_radii.size > 1:
-            weights = _lagrange_weights(table.log_radii, np.log(radius))
+        several = table.log_radii.size > 1
+        weights = _lagrange_weights(table.log_radii, np.log(radius)) if several else [np.ones(1)]
         for weight, rows in zip(weights, pieces, strict=True):
-            c0, c1, c2, c3, c4, c5 = (row.take(piece) for row in rows)
-            total[0] += weight * (c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5)))))
-            total[1] += weight * (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5))))
-            total[2] += weight * (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5)))
+            for sums, part in zip(total, quintic(rows.take(piece, axis=1), t), strict=True):
+                sums += weight * part
         first, second = total[1] / h, total[2] / h**2
         on_table = beyond == 0.0
         # The curvature decays within about one unit of X, so the load stays continuously differentiable.
@@ -266,3 +262,29 @@ class ProfiledLineContactLaw(ContactLaw):
         value = np.where(on_table, total[0], total[0] + first * beyond + second * run)
         slope = np.where(on_table, first, first + second * np.sign(beyond) * (1.0 - fade))
         return value, slope, np.where(on_table, second, second * fade)
+
+
+def law_for_profile(
+    profile: LengthProfile,
+    *,
+    length: float,
+    radius: float,
+    contact_modulus: float,
+    effective_radii: FloatArray,
+    on_ladder: bool = False,
+) -> ContactLaw:
+    """Return the tabulated law of a roller or pin of a length and radius in mm and a contact modulus E* in MPa.
+
+    Of `effective_radii`, mm, at which the law will be evaluated, only the range matters, and only for profiled parts; it is
+    rounded outward to powers of `LADDER_RATIO` if `on_ladder`, so that parts that differ little have the same table.
+    """
+    generator = generator_profile(profile, length, radius)
+    if generator is None:
+        return LineContactLaw(length, contact_modulus)
+    ends = np.array([np.min(effective_radii), np.max(effective_radii)])
+    if on_ladder:
+        step = np.log(LADDER_RATIO)
+        rungs = np.log(ends) / step
+        ends = np.exp(step * np.array([np.floor(rungs[0]), np.ceil(rungs[1])]))
+    smallest, largest = float(ends[0]), float(ends[1])
+    return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

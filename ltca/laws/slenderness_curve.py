@@ -8,9 +8,8 @@ half the time of scipy's evaluation, which searches the knots.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from math import factorial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,6 +84,15 @@ def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray
     return np.ascontiguousarray(PPoly.from_bernstein_basis(spline).c[::-1])
 
 
+def quintic(coefficients: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return values, slopes and curvatures by the local coordinate t of pieces with coefficients of t⁰ … t⁵, shape (6, …)."""
+    c0, c1, c2, c3, c4, c5 = coefficients
+    fifth = t * c5
+    value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + fifth))))
+    first = c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + 5.0 * fifth)))
+    return value, first, 2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + 20.0 * fifth))
+
+
 @dataclass(frozen=True, slots=True)
 class SlendernessCurve:
     """Smooth positive curve over X = ln(ρδ/L²), continued beyond its knots on both sides with value, slope and curvature.
@@ -108,21 +116,6 @@ class SlendernessCurve:
     coefficients: FloatArray
     light_slope: float
 
-    @classmethod
-    def through(cls, nodes: FloatArray, values: FloatArray, light_slope: float) -> SlendernessCurve:
-        """Curve through positive values at uniform nodes."""
-        return cls(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
-
-    @classmethod
-    def of_content(cls, content: dict[str, Any]) -> SlendernessCurve:
-        """Return the curve of which `content` gave these plain numbers, to the last bit."""
-        return cls(**content | {"coefficients": np.array(content["coefficients"])})
-
-    def content(self) -> dict[str, Any]:
-        """Return the curve as plain numbers, for a file."""
-        values = {item.name: getattr(self, item.name) for item in fields(self)}
-        return values | {"coefficients": self.coefficients.tolist()}
-
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
         piece, t, inside = self._locate(x)
@@ -133,12 +126,10 @@ class SlendernessCurve:
     def value_and_derivatives(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Value, first and second derivative at ``x``, each of its shape."""
         piece, t, inside = self._locate(x)
-        c0, c1, c2, c3, c4, c5 = self.coefficients.take(piece, axis=1)
+        value, first, second = quintic(self.coefficients.take(piece, axis=1), t)
         inverse = 1.0 / self.spacing
-        fifth = t * c5
-        value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + fifth))))
-        first = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + 5.0 * fifth)))) * inverse
-        second = (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + 20.0 * fifth))) * (inverse * inverse)
+        first *= inverse
+        second *= inverse * inverse
         if not inside:
             value, first, second = self._beyond(x, value, first, second)
         return np.asarray(value), np.asarray(first), np.asarray(second)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, map_arrays
 
 POINTS = 4
 """Points of a slice at which its surfaces' approach is taken (Gauss)."""
@@ -21,31 +22,18 @@ LAST_STEP_ERROR = 1e4
 """Bound of what a last step along slopes leaves over, by the square of what was left before it."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Exactness:
-    """How close contacts come to balance before their last step, which is taken along slopes and squares what is left.
-
-    Attributes
-    ----------
-    slices : float
-        Load of a slice that is left over by the largest of its contact.
-    rollers : float
-        Force or moment of a roller that is left over by its load.
-    steady : float
-        Change of a point's approach by itself in the last step.
-    steps : int
-        Steps that a roller takes; what is left then is told.
-    """
+class Exactness(NamedTuple):
+    """How close slices come to balance before their last step, which is taken along slopes and squares what is left."""
 
     slices: float
-    rollers: float
+    """Load of a slice that is left over by the largest of its contact."""
     steady: float
-    steps: int
+    """Change of a point's approach by itself in the last step."""
 
 
-EXACT = Exactness(slices=1e-8, rollers=1e-5, steady=1e-3, steps=80)
+EXACT = Exactness(slices=1e-8, steady=1e-3)
 """To round-off: line loads follow their slopes so far."""
-ROUGH = Exactness(slices=3e-3, rollers=3e-3, steady=0.3, steps=3)
+ROUGH = Exactness(slices=3e-3, steady=0.3)
 """While a search is on its way: 1e-5 of a load."""
 
 
@@ -59,6 +47,16 @@ def slice_heights(length: float, slices: int) -> FloatArray:
 def slice_means(values: FloatArray) -> FloatArray:
     """Return the means over slices of values at their points, shape (…, slices, points)."""
     return np.asarray(values @ SHARES)
+
+
+def rows_of(relief: FloatArray, places: Any) -> FloatArray:
+    """Return the reliefs of some contacts by their places, shape (contacts, slices, points); one that all share as it is.
+
+    `places` index contacts, of which the first axis tells the drive: a mask, or a tuple of arrays of numbers.
+    """
+    if relief.ndim == 2:
+        return relief
+    return relief[places[0] if isinstance(places, tuple) else np.nonzero(places)[0]]
 
 
 @cache
@@ -85,10 +83,6 @@ class SlicedContact:
         q at the points of the slices, N/mm.
     near : array, shape (…, 2 + 3 slices) or (…, 0)
         δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
-    line_slopes : array, shape (…, slices, points), or None
-        dq by the approach at each point, N/mm²; None where contacts are not moved along them.
-    steady : array, shape (…), or None
-        Least approach or gap of a point: what changes approaches by a part of it everywhere moves contacts along slopes, mm.
     left : array, shape (…), or None
         Force that may be left over of the slices, N; None of laws that leave none.
     """
@@ -101,18 +95,29 @@ class SlicedContact:
     slice_load: FloatArray
     line_load: FloatArray
     near: FloatArray
-    line_slopes: FloatArray | None = None
-    steady: FloatArray | None = None
     left: FloatArray | None = None
 
-    def take(self, rows: NDArray[np.intp]) -> SlicedContact:
-        """Return some of a row of contacts."""
-        return SlicedContact(**{name: values[rows] for name, values in self._arrays()})
+    @classmethod
+    def open(cls, contacts: int, slices: int) -> SlicedContact:
+        """Return a row of contacts that carry nothing."""
+        numbers = {name: np.zeros(contacts) for name in ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt")}
+        return cls(
+            **numbers,
+            slice_load=np.zeros((contacts, slices)),
+            line_load=np.zeros((contacts, slices, POINTS)),
+            near=np.zeros((contacts, 2 + 3 * slices)),
+        )
 
     def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
         """Write what some of a row of contacts are now."""
-        for name, values in self._arrays():
-            values[rows] = getattr(part, name)
+        for name in self.__slots__:
+            if (values := getattr(self, name)) is not None:
+                values[rows] = getattr(part, name)
+
+    def shaped(self, shape: tuple[int, ...]) -> SlicedContact:
+        """Return a row of contacts in a shape."""
+        found: SlicedContact = map_arrays(lambda values: values.reshape((*shape, *values.shape[1:])), self)
+        return found
 
     @classmethod
     def of_separate(
@@ -151,40 +156,7 @@ class SlicedContact:
     @property
     def kept(self) -> SlicedContact:
         """The contacts without what a search alone asks for."""
-        return replace(self, near=self.near[..., :0], line_slopes=None, steady=None, left=None)
-
-    @property
-    def still(self) -> SlicedContact:
-        """The contacts without what moves them along their slopes."""
-        return replace(self, line_slopes=None, steady=None)
-
-    @property
-    def halves(self) -> tuple[SlicedContact, SlicedContact]:
-        """Contacts of the shape (2, n) as twice n contacts."""
-        one, other = ({name: values[half] for name, values in self._arrays()} for half in (0, 1))
-        return SlicedContact(**one), SlicedContact(**other)
-
-    def squeezed(self) -> SlicedContact:
-        """Return contacts of the shape (n, 1) as n contacts."""
-        return SlicedContact(**{name: values[:, 0] for name, values in self._arrays()})
-
-    def shift(self, rows: NDArray[np.intp], approach: FloatArray, tilt: FloatArray, length: float) -> None:
-        """Move some of a row of contacts of a length, mm, along their slopes, in place."""
-        assert self.line_slopes is not None
-        slices = self.slice_load.shape[-1]
-        z, weights = slice_heights(length, slices), length / slices * SHARES
-        by_approach, by_tilt = self.by_approach[rows], self.by_tilt[rows]
-        self.load[rows] += by_approach * approach + by_tilt * tilt
-        self.moment[rows] += by_tilt * approach + self.moment_by_tilt[rows] * tilt
-        slopes, of_points = self.near[rows, 2 + slices :], self.line_slopes[rows]
-        moved = approach[:, None] * slopes[:, :slices] + tilt[:, None] * slopes[:, slices:]
-        self.slice_load[rows] += moved
-        # Points of a slice approach alike but for the tilt: by as much as its load follows.
-        stiff, turned = of_points @ weights, tilt[:, None, None] * z
-        alike = np.divide(moved - (of_points * turned) @ weights, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
-        self.line_load[rows] += of_points * (alike[..., None] + turned)
-        self.near[rows, :2] += np.stack((approach, tilt), axis=1)
-        self.near[rows, 2 : 2 + slices] += moved
+        return replace(self, near=self.near[..., :0], left=None)
 
     def moved(
         self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float
@@ -213,9 +185,6 @@ class SlicedContact:
             line_load=self.line_load * grown[..., None],
             near=near,
         )
-
-    def _arrays(self) -> list[tuple[str, FloatArray]]:
-        return [(name, values) for name in self.__slots__ if (values := getattr(self, name)) is not None]
 
 
 def loads_nearby(near: FloatArray, approach: FloatArray, tilt: FloatArray) -> FloatArray:

@@ -29,9 +29,10 @@ round-off.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,8 @@ from ltca.contact.free_end import FreeEnds
 from ltca.contact.influence import end_images, lagged_influence
 from ltca.errors import ConvergenceError
 from ltca.laws.backed import HALF_SPACE_DATUM, MAX_OVERLAP, OVERLAP_SHARPNESS
-from ltca.laws.slenderness_curve import SlendernessCurve, quintic_spline_pieces
+from ltca.laws.plane_strain import PlaneContactLaw, plane_load
+from ltca.laws.slenderness_curve import quintic, quintic_spline_pieces
 from ltca.laws.sliced_contact import (
     EXACT,
     LAST_STEP_ERROR,
@@ -50,6 +52,7 @@ from ltca.laws.sliced_contact import (
     Exactness,
     SlicedContact,
     loads_nearby,
+    rows_of,
     slice_heights,
 )
 
@@ -70,74 +73,8 @@ NARROWEST, WIDEST = 1e-4, 40.0
 TOUCHING = 1e-16
 """Deepest approach by the length up to which a contact is open: less is round-off of where parts stand."""
 _KNOTS = 81
-_LIGHTEST, _HEAVIEST, _PLANE_KNOTS = -46.0, -0.3, 4097
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 TABLE = Path(__file__).with_name("sliced_line.json")
-
-
-@cache
-def plane_curve() -> SlendernessCurve:
-    """Return w = X/Q over ln X, of the plane law with X = 2 δ ρ/D² and Q = (b/D)²: X = Q (ln(4/Q) + 1)/2."""
-    places = np.linspace(_LIGHTEST, _HEAVIEST, 129)
-    return SlendernessCurve.through(places, np.exp(places) / _plane_square(places), 0.5)
-
-
-def _plane_square(place: FloatArray) -> FloatArray:
-    """Q at ln X."""
-    square = np.exp(place) / 3.0
-    for _ in range(100):
-        square = np.exp(place) / (0.5 * (np.log(4.0 / square) + 1.0))
-    for _ in range(3):
-        slope = 0.5 * np.log(4.0 / square)
-        square = square - (square * (slope + 0.5) - np.exp(place)) / slope
-    return np.asarray(square)
-
-
-@cache
-def _plane_pieces() -> FloatArray:
-    """Cubic pieces of 1/w over ln X from its values and slopes, as close to it as round-off of loads lets them matter."""
-    places = np.linspace(_LIGHTEST, _HEAVIEST, _PLANE_KNOTS)
-    square = _plane_square(places)
-    level = 0.5 * (np.log(4.0 / square) + 1.0)
-    value, slope = 1.0 / level, 0.5 / (level * (level - 0.5)) * (places[1] - places[0])
-    before, after, rise = slope[:-1], slope[1:], np.diff(value)
-    return np.stack((value[:-1], before, 3.0 * rise - 2.0 * before - after, before + after - 2.0 * rise))
-
-
-def _plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """1/w at ln X and its derivative; in the array itself."""
-    per_knot = (_PLANE_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
-    beyond = None
-    if place.size and not (place.min() >= _LIGHTEST and place.max() < _HEAVIEST):
-        beyond = (place < _LIGHTEST) | (place >= _HEAVIEST)
-        level, bend, _ = plane_curve().value_and_derivatives(place[beyond])
-        place[beyond] = _LIGHTEST
-    place -= _LIGHTEST
-    place *= per_knot
-    piece = place.astype(np.intp)
-    place -= piece
-    value, slope, third, last = _plane_pieces().take(piece, axis=1)
-    # c0 + t (c1 + t (c2 + t c3)) and c1 + t (2 c2 + 3 t c3), by c2 + t c3 and t c3.
-    last *= place
-    third += last
-    last += third
-    third *= place
-    last *= place
-    last += third
-    third += slope
-    third *= place
-    value += third
-    slope += last
-    slope *= per_knot
-    if beyond is not None:
-        value[beyond], slope[beyond] = 1.0 / level, -bend / level**2
-    return value, slope
-
-
-@cache
-def _lags(slices: int) -> FloatArray:
-    """Pieces of a_k over ln(b/l), k = 0 … n − 1, without the softer ends, shape (6, slices, pieces)."""
-    return np.stack([quintic_spline_pieces(curve) for curve in _strips(slices)], axis=1)
 
 
 @cache
@@ -159,13 +96,7 @@ def places() -> FloatArray:
 
 @cache
 def softer_ends(slices: int) -> FloatArray:
-    """Return pieces of ε over ln(b/l) of lines of so many slices that ship with the package, shape (6, pieces)."""
-    return quintic_spline_pieces(_softer_ends(slices))
-
-
-@cache
-def _softer_ends(slices: int) -> FloatArray:
-    """ε at the knots."""
+    """Return ε at the knots of lines of so many slices, as it ships with the package."""
     return np.array(json.loads(TABLE.read_text(encoding="utf-8"))["softer"][str(slices)])
 
 
@@ -190,12 +121,11 @@ def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
     Images with the weight 1 at the very end leave nothing of the bulge there, and others a part of it; what even slices miss
     of its energy goes with the square. Where bodies reach beyond, images count by what the end slice feels of its own.
     """
-    table = _softer_ends(slices)
-    if not free_ends:
-        return np.concatenate((_lags(slices), softer_ends(slices)[:, None]), axis=1)
-    images = np.sum([each.weight * _images(slices, each.reach) for each in free_ends], axis=0)
-    bulge = 1.0 - images[-1] / _images(slices, 1.0)[-1]
-    every = np.concatenate((_strips(slices), (bulge**2 * table)[None], images))
+    ends, images = softer_ends(slices), np.empty((0, _KNOTS))
+    if free_ends:
+        images = np.sum([each.weight * _images(slices, each.reach) for each in free_ends], axis=0)
+        ends = (1.0 - images[-1] / _images(slices, 1.0)[-1]) ** 2 * ends
+    every = np.concatenate((_strips(slices), ends[None], images))
     return np.stack([quintic_spline_pieces(curve) for curve in every], axis=1)
 
 
@@ -346,7 +276,7 @@ class SlicedLine:
         if relief.shape[2] not in (1, *shape[:1]):
             raise ValueError(f"reliefs of {relief.shape[2]} positions do not fit approaches of the shape {shape}")
         drive = closed * relief.shape[2] // max(delta.size, 1)  # the first axis of the approaches
-        found = {name: np.zeros((delta.size, *size)) for name, size in self._sizes().items()}
+        found = replace(SlicedContact.open(delta.size, n), left=np.zeros(delta.size))
         near = None if start is None else start.reshape(-1, 2 + 3 * n)
         for some in np.array_split(np.arange(closed.size), -(-closed.size // TOGETHER)) if closed.size else ():
             rows, fall = closed[some], relief if relief.shape[2] == 1 else relief[..., drive[some]]
@@ -358,26 +288,13 @@ class SlicedLine:
                 rows, free, begin = rows[pressed], free[..., pressed], None if begin is None else begin[:, pressed]
             if not rows.size:
                 continue
-            part = self._closed(free, radius[rows], begin, exactness)
-            for name, values in part.items():
-                found[name][rows] = np.moveaxis(values, -1, 0)
-            slopes = part["slopes"].reshape(2 * n, -1)
-            found["near"][rows] = np.concatenate(((delta[rows], theta[rows]), part["slice_load"], slopes)).T
-        del found["slopes"]
-        return SlicedContact(**{name: values.reshape((*shape, *values.shape[1:])) for name, values in found.items()})
+            found.put(rows, self._closed(free, radius[rows], begin, exactness))
+            found.near[rows, 0], found.near[rows, 1] = delta[rows], theta[rows]
+        return found.shaped(shape)
 
-    def _sizes(self) -> dict[str, tuple[int, ...]]:
-        """Shapes of what is found of each contact."""
-        n = self.slices
-        scalars = ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt", "steady", "left")
-        return {
-            **dict.fromkeys(scalars, ()),
-            "slice_load": (n,),
-            "slopes": (2, n),
-            "near": (2 + 3 * n,),
-            "line_load": (n, POINTS),
-            "line_slopes": (n, POINTS),
-        }
+    def take(self, shape: tuple[int, ...], places: Any) -> SlicedLine:
+        """Return the law of some contacts of a batch (`ltca.laws.contact_law.ContactLaw.take`)."""
+        return self if self.relief.ndim == 2 else replace(self, relief=rows_of(self.relief, places))
 
     def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
         """Return the energy E of contacts, N·mm, shape (…)."""
@@ -386,12 +303,8 @@ class SlicedLine:
         load, q = contact.slice_load.reshape(-1, n).T, contact.line_load.reshape(-1, n, POINTS).transpose(1, 2, 0)
         carries = contact.load.reshape(-1) > 0.0
         coupled = self._coupling(load[:, carries], radius[carries])
-        # φ = q δ − ∫ δ dq with δ by q in closed form.
-        q, here = q[..., carries], radius[carries]
-        pressed = np.where(q > 0.0, q, 1.0)
-        scale = 2.0 / (np.pi * self.contact_modulus)
-        deep = np.log(2.0 * DATUM * self.length / np.sqrt(2.0 * scale * pressed * here))
-        stored = np.where(q > 0.0, scale * q**2 * (0.5 * deep + 0.125), 0.0)
+        plane = PlaneContactLaw(thickness=1.0, contact_modulus=self.contact_modulus, datum=DATUM * self.length)
+        stored = plane.energy_of_load(q[..., carries], radius[carries])
         own = np.matmul(_moments(self.length, n)[:, :1], stored).sum(axis=(0, 1))
         found = np.zeros(radius.shape)
         found[carries] = own + (load[:, carries] * coupled.pressed_in).sum(axis=0) - coupled.energy
@@ -407,7 +320,7 @@ class SlicedLine:
         at = approach if everywhere else np.where(pressed, approach, 1e-6 * self.length)
         place = (2.0 / datum**2) * effective_radius * at
         np.log(place, out=place)
-        load, slope = _plane_load(place)
+        load, slope = plane_load(place)
         slope += load
         load *= at
         whole = 0.5 * np.pi * self.contact_modulus if everywhere else 0.5 * np.pi * self.contact_modulus * pressed
@@ -498,12 +411,8 @@ class SlicedLine:
         held = place.clip(start, stop)
         at = (held - start) / spacing
         piece = np.minimum(at.astype(np.intp), _KNOTS - 2)
-        t = at - piece
-        c0, c1, c2, c3, c4, c5 = pieces.take(piece, axis=2)
-        curve = np.empty((3, pieces.shape[1], place.size))
-        curve[0] = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
-        curve[1] = (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * (5.0 * c5))))) / spacing
-        curve[2] = (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * (20.0 * c5)))) / spacing**2
+        value, first, second = quintic(pieces.take(piece, axis=2), at - piece)
+        curve = np.stack((value, first / spacing, second / spacing**2))
         beyond = place != held
         if beyond.any():
             # Curves are nearly straight there.
@@ -513,8 +422,8 @@ class SlicedLine:
 
     def _closed(
         self, free: FloatArray, radius: FloatArray, start: FloatArray | None, exactness: Exactness
-    ) -> dict[str, FloatArray]:
-        """What contacts with something pressed together carry (`_sizes`); contacts come last."""
+    ) -> SlicedContact:
+        """What contacts with something pressed together carry, from approaches of their points, contacts last."""
         n, datum, count = self.slices, DATUM * self.length, radius.size
         moments = _moments(self.length, n)
 
@@ -529,7 +438,7 @@ class SlicedLine:
         history: list[float] = []
         going, before, fraction = np.arange(count), np.full(count, np.inf), np.ones(count)
         way = np.zeros(load.shape)
-        found: dict[str, FloatArray] = {}
+        found: SlicedContact | None = None
         for _ in range(MAX_ITERATIONS):
             coupled = self._coupling(load, radius)
             local = free - coupled.pressed_in[:, None]
@@ -551,14 +460,13 @@ class SlicedLine:
                 done &= (np.abs(shift[:, 0]).max(axis=0) <= exactness.steady * at) | (size <= ROUND_OFF * largest)
                 settled = np.maximum(line + slope * shift, 0.0)
                 last_step = LAST_STEP_ERROR * (size / largest) ** 2 * load.sum(axis=0)
-                values = settled, slope, moved[:, 1:], stiff, leaning, own, at, last_step
+                values = settled, moved[:, 1:], stiff, leaning, own, last_step
                 part = self._carried(moments, values if done.all() else tuple(each[..., done] for each in values))
-                if part["load"].size == count:
+                if done.all() and found is None:
                     return part
-                if not found:
-                    found = {name: np.zeros((*each.shape[:-1], count)) for name, each in part.items()}
-                for name, each in part.items():
-                    found[name][..., going[done]] = each
+                if found is None:
+                    found = replace(SlicedContact.open(count, n), left=np.zeros(count))
+                found.put(going[done], part)
             for kept, now in ((before, size), (fraction, 1.0)):
                 kept[...] = np.where(worse, kept, now)
             # Back to a part of the last step where it made things worse.
@@ -569,38 +477,33 @@ class SlicedLine:
             back = np.maximum(load - 1.5 * fraction * way, 0.0)
             way = np.where(worse, way, target - load)
             load = np.where(worse, back, target)
-            if done.all():
-                break
+            if found is not None and done.all():
+                return found
             if done.any():
                 on = ~done
                 going, before, fraction, radius = going[on], before[on], fraction[on], radius[on]
                 load, way, free = load[:, on], way[:, on], free[..., on]
-        else:
-            raise ConvergenceError(self._why_not(load, radius), history)
-        return found
+        raise ConvergenceError(self._why_not(load, radius), history)
 
-    def _carried(self, moments: FloatArray, values: tuple[FloatArray, ...]) -> dict[str, FloatArray]:
-        """What contacts carry that are done (`_sizes`), contacts last."""
-        line, slope, moved, stiff, leaning, own, steady, left = values
+    def _carried(self, moments: FloatArray, values: tuple[FloatArray, ...]) -> SlicedContact:
+        """What contacts carry that are done."""
+        line, moved, stiff, leaning, own, left = values
         both = np.matmul(moments[:, :2], line)
-        loads = both[:, 0]
         # By the tilt points of a slice approach alike but for their heights, as its load follows.
         inverse = np.divide(1.0, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
-        by_approach, by_tilt = moved[:, 0], moved[:, 1]
-        turned = by_tilt - leaning
-        return {
-            "load": loads.sum(axis=0),
-            "moment": both[:, 1].sum(axis=0),
-            "by_approach": by_approach.sum(axis=0),
-            "by_tilt": by_tilt.sum(axis=0),
-            "moment_by_tilt": (own + leaning * inverse * turned).sum(axis=0),
-            "steady": steady,
-            "left": left,
-            "slice_load": loads,
-            "slopes": moved.swapaxes(0, 1),
-            "line_load": line,
-            "line_slopes": slope,
-        }
+        turned = moved[:, 1] - leaning
+        changes = both[:, 0], moved[:, 0], moved[:, 1]
+        return SlicedContact(
+            load=both[:, 0].sum(axis=0),
+            moment=both[:, 1].sum(axis=0),
+            by_approach=moved[:, 0].sum(axis=0),
+            by_tilt=moved[:, 1].sum(axis=0),
+            moment_by_tilt=(own + leaning * inverse * turned).sum(axis=0),
+            slice_load=both[:, 0].T,
+            line_load=np.moveaxis(line, -1, 0),
+            near=np.concatenate((np.zeros((2, left.size)), *changes)).T,
+            left=left,
+        )
 
     def _why_not(self, load: FloatArray, effective_radius: FloatArray) -> str:
         """What to tell of contacts that do not settle."""

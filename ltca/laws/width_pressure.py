@@ -1,30 +1,27 @@
 """Pressures of contacts along their width: over the heights, the largest anywhere with its place, and at the ends.
 
-Two ways. `solve_along_width` solves the half-space grid of every contact at its approach and tilt, ends included. Within
-iterations and for many drives `estimate_along_width` takes the pressure of a long line under each line load,
-:math:`p = E^* b/(2\\rho)`, and at the ends that carry the ratio of an aligned end to its line (`ltca.contact.end_pressure`).
+`estimate_along_width` takes the pressure of a long line under each line load, :math:`p = E^* b/(2\\rho)`, and at the ends that
+carry the ratio of an aligned end to its line (`ltca.contact.end_pressure`). `PatchAlongWidth` reads the half-space grid of a
+contact at its approach and tilt, ends included (`validation.methods.grid_pressures` solves them for all contacts).
 
 At an unrelieved end the pressure of half-spaces is singular: as in the plane, pressures are means over a hundredth of the length.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray
+from ltca.contact.contact_kind import ContactKind
 from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.free_end import FreeEnds, remaining_bulge
-from ltca.contact.tilted_grid import SAMPLES, TiltedPatch, TiltedPiece, recover_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
+from ltca.contact.pressure_cells import PatchPressure
 from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
 from ltca.laws.sliced_line import SlicedLine
 
-HEIGHTS = 33
-"""Heights at which pressures are given where none are asked for."""
 NODES = 61
 """Aligned straight lines between which others are interpolated."""
 PEAK_BY_BULGE = 1.45
@@ -123,67 +120,8 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     )
 
 
-def solve_along_width(
-    kind: ContactKind,
-    approach: FloatArray,
-    tilt: FloatArray,
-    effective_radius: FloatArray,
-    heights: FloatArray | None = None,
-    separations: Callable[..., tuple[Separation, Sequence[TiltedPiece]]] | None = None,
-) -> WidthPressures:
-    """Return pressures of contacts from half-space grids at their approaches and tilts, one solution for each that is closed.
-
-    Parameters
-    ----------
-    kind : ContactKind
-        Kind of the contacts.
-    approach, tilt, effective_radius : array, shape (…)
-        δ in the middle of the width, mm; θ, rad, positive presses positive z; ρ, mm.
-    heights : array, shape (heights,), optional
-        z, mm; default `HEIGHTS` even ones from end to end.
-    separations : callable, optional
-        Separation of the surfaces of a contact by its indices in the arrays, and pieces to start from
-        (`ltca.contact.tilted_grid`); default the parabola x²/(2ρ) and none.
-    """
-    half = 0.5 * kind.length
-    z = np.linspace(-half, half, HEIGHTS) if heights is None else np.asarray(heights, dtype=float)
-    delta, theta, radius = np.broadcast_arrays(approach, tilt, effective_radius)
-    lines, pressures = np.zeros((*delta.shape, z.size)), np.zeros((*delta.shape, z.size))
-    largest, place, end_load = np.zeros(delta.shape), np.zeros(delta.shape), np.zeros((*delta.shape, 2))
-    # A line that reaches nowhere is open: no tilt brings its ends further than that, and no lead its metal.
-    metal = max(0.0, -float(kind.relief(np.linspace(-half, half, SAMPLES)).min()))
-    for index in zip(*np.nonzero(delta + half * np.abs(theta) + metal > 0.0), strict=True):
-        size = float(radius[index])
-        separation, known = _parabola(size) if separations is None else separations(*index)
-        patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]), known)
-        if patch is None:
-            continue
-        along = _Along.of_patch(patch, kind)
-        lines[index], pressures[index] = along.means(along.line_load, z), along.means(along.peak, z)
-        largest[index], place[index] = along.largest()
-        end_load[index] = along.means(along.line_load, np.array((-half, half)))
-    return WidthPressures(
-        height=z,
-        line_load=lines,
-        even_line_load=lines,
-        pressure=pressures,
-        largest=largest,
-        place=place,
-        end_load=end_load,
-    )
-
-
-def _parabola(radius: float) -> tuple[Separation, tuple[TiltedPiece, ...]]:
-    return Separation(effective_radius=radius, departure=lambda _, x: x**2 / (2.0 * radius)), ()
-
-
-def largest_along(patch: TiltedPatch, kind: ContactKind) -> float:
-    """Return the largest pressure of a patch as a mean over a stretch along the width, MPa, whatever ends it has."""
-    return _Along.of_patch(patch, kind).largest()[0]
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Along:
+class PatchAlongWidth:
     """A contact by its cells along the width: line load and largest pressure over the profile of each."""
 
     edges: FloatArray
@@ -193,14 +131,14 @@ class _Along:
     stretch: float
 
     @classmethod
-    def of_patch(cls, patch: TiltedPatch, kind: ContactKind) -> _Along:
+    def of_patch(cls, patch: PatchPressure, kind: ContactKind) -> PatchAlongWidth:
         """Return those of a patch."""
-        width = float(patch.x_edges[1] - patch.x_edges[0])
-        images = 2.0 if patch.symmetric else 1.0
+        grid = patch.grid
+        images = 2.0 if grid.symmetric_x else 1.0
         return cls(
-            edges=patch.z_edges,
-            line_load=images * width * patch.pressure.sum(axis=0),
-            peak=_peaks(patch.pressure, patch.symmetric),
+            edges=grid.y_edges,
+            line_load=images * float(grid.x_edges[1] - grid.x_edges[0]) * patch.pressure.sum(axis=0),
+            peak=_peaks(patch.pressure, grid.symmetric_x),
             half=0.5 * kind.length,
             stretch=kind.end_cell,
         )

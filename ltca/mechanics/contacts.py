@@ -473,7 +473,7 @@ class Linearised:
                     values[:, kind] = mine
                 if one.left is not None and one.left.size:
                     self.law_left = np.maximum(self.law_left, one.left.max(axis=1))
-                found.append(one.still)
+                found.append(one)
             self.sliced.append(found)
 
     def _choose(self) -> None:

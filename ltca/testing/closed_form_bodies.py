@@ -13,9 +13,9 @@ import json
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.contact.hertz import cylinder_approach, half_plane_approach
 from ltca.contact.round_bodies import held_ring_approach
 from ltca.drive.parts import Drive, Material
 from ltca.drive.single_discs import nominal_shape
@@ -173,3 +173,27 @@ def _stations(drive: Drive) -> tuple[list[ComplexArray], ComplexArray]:
     bores = [centre + place.bore_radius * circle(BORE) for centre in place.bore_centres]
     normals = [profile.normal(parameter), *[-circle(BORE)] * len(bores), *[-circle(PER_HOLE)] * len(holes)]
     return [profile.flank(parameter), *bores, *holes], np.concatenate(normals)
+
+
+def half_plane_approach(
+    line_load: ArrayLike, half_width: ArrayLike, depth: ArrayLike, young_modulus: float, poisson_ratio: float
+) -> FloatArray:
+    """Return the approach of a point at a depth d ≫ b under a Hertz strip toward the surface of a half-plane, mm.
+
+    δ = q (1−ν²)/(π E) (2 ln(2d/b) − ν/(1−ν)), plane strain (Johnson section 5.6).
+    """
+    q, b, d = (np.asarray(value, dtype=float) for value in (line_load, half_width, depth))
+    compliance = (1.0 - poisson_ratio**2) / (np.pi * young_modulus)
+    return np.asarray(q * compliance * (2.0 * np.log(2.0 * d / b) - poisson_ratio / (1.0 - poisson_ratio)))
+
+
+def cylinder_approach(
+    line_load: ArrayLike, half_width: ArrayLike, radius: ArrayLike, young_modulus: float, poisson_ratio: float
+) -> FloatArray:
+    """Return the approach of the centre of a cylinder, squeezed between two opposite contacts, toward one of them, mm.
+
+    δ = q (1−ν²)/(π E) (2 ln(4R/b) − 1), plane strain (Johnson section 5.6, Eq. 5.57). The compression of the
+    diameter is the sum of both sides with their half-widths (Eq. 5.58).
+    """
+    q, b, r = (np.asarray(value, dtype=float) for value in (line_load, half_width, radius))
+    return np.asarray(q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0))

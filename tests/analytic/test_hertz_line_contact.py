@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact import hertz
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.subsurface import find_subsurface_shear, patch_stress
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.line_contact import LineContactLaw
+from validation import hertz
 
 STEEL = Material(youngs_modulus=206e3, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)
@@ -22,8 +23,8 @@ def test_mid_width_of_a_long_roller_is_hertz(length, radius, approach, cells):
     x, pressure = solution.mid_profile
     line_load = 2.0 * float(np.sum(pressure)) * (x[1] - x[0])
     # required 0.3 %; half-width and peak are corrected for the cells, without that 8 of them err by 0.2 %
-    assert solution.mid_pressure == pytest.approx(float(hertz.line_peak_pressure(line_load, radius, MODULUS)), rel=4e-4)
-    assert solution.half_width == pytest.approx(float(hertz.line_half_width(line_load, radius, MODULUS)), rel=4e-4)
+    assert solution.mid_pressure == pytest.approx(float(line_peak_pressure(line_load, radius, MODULUS)), rel=4e-4)
+    assert solution.half_width == pytest.approx(float(line_half_width(line_load, radius, MODULUS)), rel=4e-4)
     shape = solution.mid_pressure * np.sqrt(np.maximum(1.0 - (x / solution.half_width) ** 2, 0.0))
     inside = x < solution.half_width - 2 * (x[1] - x[0])
     # two cells from the edge's square root constant cells follow the profile within 0.1 %
@@ -46,7 +47,7 @@ def test_approach_lies_between_the_two_strip_formulas():
     for approach in (1e-7, 1e-5, 1e-4, 1e-3, 5e-3):
         load, _ = law.load_and_stiffness(approach, 2.0)
         line_load = float(load) / 11.8
-        width = hertz.line_half_width(line_load, 2.0, MODULUS)
+        width = line_half_width(line_load, 2.0, MODULUS)
         mid, mean = hertz.strip_approach(line_load, width, 11.8, MODULUS)
         assert approach < mean
         # the load evens out over the length: δ stays within 1.5/v² … of the mean, v = π E* δ/q
@@ -60,7 +61,7 @@ def test_light_load_limit_of_the_approach_is_the_mean_of_the_strip():
     gaps = []
     for approach in (1e-3, 1e-8, 1e-12, 1e-60):
         load, _ = law.load_and_stiffness(approach, 2.0)
-        width = hertz.line_half_width(float(load) / 11.8, 2.0, MODULUS)
+        width = line_half_width(float(load) / 11.8, 2.0, MODULUS)
         _, mean = hertz.strip_approach(float(load) / 11.8, width, 11.8, MODULUS)
         gaps.append(1.0 - approach / float(mean))
     assert all(gap > 0 for gap in gaps)

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad, quad
 
-from ltca.contact import hertz
+from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.subsurface import max_shear_stress, rectangle_stress
 from ltca.drive.parts import Material, contact_modulus
+from ltca.testing.closed_form_bodies import cylinder_approach, half_plane_approach
+from validation import hertz
 
 YOUNG, POISSON = 206e3, 0.3
 
@@ -16,8 +18,8 @@ YOUNG, POISSON = 206e3, 0.3
 def test_line_contact_balances_its_load():
     steel = Material(youngs_modulus=YOUNG, poisson_ratio=POISSON)
     modulus = contact_modulus(steel, steel)
-    width = float(hertz.line_half_width(500.0, 2.0, modulus))
-    peak = float(hertz.line_peak_pressure(500.0, 2.0, modulus))
+    width = float(line_half_width(500.0, 2.0, modulus))
+    peak = float(line_peak_pressure(500.0, 2.0, modulus))
     assert np.pi * peak * width / 2 == pytest.approx(500.0, rel=1e-14)  # area of the half ellipse
     assert float(hertz.line_load(width, 2.0, modulus)) == pytest.approx(500.0, rel=1e-14)
     assert peak == pytest.approx(modulus * width / 4.0, rel=1e-14)
@@ -27,7 +29,7 @@ def test_steel_roller_on_flat():
     """The usual formula 271 √(F/(D L)) MPa for steel rollers on a flat (DIN/ISO bearing practice)."""
     steel = Material(youngs_modulus=210e3, poisson_ratio=0.3)
     modulus = contact_modulus(steel, steel)
-    peak = float(hertz.line_peak_pressure(40e3 / 20.0, 10.0, modulus))
+    peak = float(line_peak_pressure(40e3 / 20.0, 10.0, modulus))
     assert peak == pytest.approx(271.0 * np.sqrt(40e3 / (20 * 20)), rel=5e-4)  # 271 is rounded to three digits
     assert peak == pytest.approx(2710.0, abs=1.0)
 
@@ -48,7 +50,7 @@ def test_half_plane_approach_is_the_integral_of_the_strain():
         quad(depth_strain, a, b, args=(width, peak), epsabs=0.0)[0] for a, b in zip(starts, breaks, strict=True)
     )
     # the formula drops terms of (b/d)² = 1e-4
-    assert total == pytest.approx(float(hertz.half_plane_approach(load, width, depth, YOUNG, POISSON)), rel=1e-4)
+    assert total == pytest.approx(float(half_plane_approach(load, width, depth, YOUNG, POISSON)), rel=1e-4)
 
 
 def test_cylinder_approach_is_the_integral_of_the_strain_of_a_disc():
@@ -67,7 +69,7 @@ def test_cylinder_approach_is_the_integral_of_the_strain_of_a_disc():
     breaks = np.geomspace(width / 10, radius, 12)
     starts = np.concatenate([[0.0], breaks[:-1]])
     total = sum(quad(strain, a, b, epsabs=0.0)[0] for a, b in zip(starts, breaks, strict=True))
-    assert total == pytest.approx(float(hertz.cylinder_approach(load, width, radius, YOUNG, POISSON)), rel=2e-4)
+    assert total == pytest.approx(float(cylinder_approach(load, width, radius, YOUNG, POISSON)), rel=2e-4)
 
 
 def test_strip_approach_is_boussinesq_integrated():

@@ -9,7 +9,8 @@ from ltca.analysis.engines import HalfSpace
 from ltca.compliance.response import Start, bearing_pushes
 from ltca.drive.parts import PlacementErrors, ShaftPinBeam, WheelPinBeam
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.laws.sliced_spring import SlicedSpring
+from ltca.laws.separate_slices import SeparateSlices
+from ltca.laws.spring import SpringLaw
 from ltca.mechanics import elimination
 from ltca.mechanics.contacts import ContactSystem
 from ltca.mechanics.pressing import assembled
@@ -62,7 +63,8 @@ def test_cantilever_pins_slope_by_hand():
     shaft, width = drive.pin_shaft, drive.disc.thickness
     model = HalfSpace().prepare(drive).model
     spring, stiffness = 1.0e6, np.diag([1.0e6, 1.0e6 * width**2 / 12.0])
-    law = SlicedSpring(stiffness=spring, length=width, slices=SLICES)
+    relief = np.zeros((SLICES, 4))
+    law = SeparateSlices(law=SpringLaw(stiffness=spring), length=width, slices=SLICES, relief=relief)
     model = replace(model, discs=tuple(replace(disc, hole_law=law) for disc in model.discs))
     pose = np.zeros((1, model.coordinates.size))
     pose[:, 2] = 2e-4

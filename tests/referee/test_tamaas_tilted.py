@@ -10,12 +10,13 @@ import needs
 import numpy as np
 import pytest
 
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+from ltca.laws.width_pressure import estimate_along_width
+from validation.methods.grid_pressures import solve_along_width
 
 tamaas = needs.optional("tamaas")
 pytestmark = [pytest.mark.needs("referee")]

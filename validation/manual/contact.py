@@ -17,9 +17,10 @@ from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle
 from fem.shapes import CircleShape
 from ltca.arrays import FloatArray, IntArray
-from ltca.contact.hertz import line_half_width, strip_approach
+from ltca.contact.hertz import line_half_width
 from ltca.drive.parts import Material, contact_modulus
 from ltca.laws.line_contact import LineContactLaw
+from validation.hertz import strip_approach
 from validation.levels.closed_forms import crowned_roller_rows, cylinder_rows, roller_rows
 from validation.manual.case import Case, Figure, Reference, relative_figure
 from validation.manual.error_bars import HALVED, error_by_size, figures_by_size
@@ -355,7 +356,7 @@ CASES = (
         references=(
             Reference(
                 source="Lundberg (1939): strip of even load along its length, mean approach "
-                "(`ltca.contact.hertz.strip_approach`; a "
+                "(`validation.hertz.strip_approach`; a "
                 "test integrates Boussinesq's solution)",
                 uncertainty="Holds in the limit; at finite loads the true load is not even along the length, which "
                 "informing rows show.",
@@ -374,7 +375,7 @@ CASES = (
         "and largest pressure.",
         references=(
             Reference(
-                source="Hertz, elliptical contact (`ltca.contact.hertz.solve_point_contact`; a test shows that its "
+                source="Hertz, elliptical contact (`validation.hertz.solve_point_contact`; a test shows that its "
                 "pressure displaces "
                 "the surface by approach less separation)",
                 uncertainty="None beyond round-off: elliptic integrals to 1e-12.",

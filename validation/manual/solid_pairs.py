@@ -21,18 +21,18 @@ from fem.solid_contact.solved_pair import (
     solve_pair,
 )
 from ltca.arrays import FloatArray
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.free_end import free_end_factor
 from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.pressure_cells import PatchSolution, solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.drive.parts import Material, contact_modulus
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
-from ltca.laws.width_pressure import solve_along_width
 from validation.levels.other_code_problems import CODES, CROWNED_PAIRS
 from validation.levels.other_codes import compare_answers, stored_answer
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
 from validation.manual.error_bars import error_by_size
+from validation.methods.grid_pressures import solve_along_width
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)

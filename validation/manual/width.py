@@ -8,13 +8,14 @@ from functools import cache
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+from ltca.laws.width_pressure import estimate_along_width
 from validation.manual.case import Case, Figure, Reference
+from validation.methods.grid_pressures import solve_along_width
 
 LENGTH, MODULUS, DEEP = 12.0, 115e3, 3e-3
 """Length of the line, mm, E*, MPa, and the approach to which approaches, tilts at the ends and drops are scaled, mm."""

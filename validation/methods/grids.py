@@ -22,9 +22,9 @@ from ltca.arrays import FloatArray
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.pressures import along_width, elastic_hole_pressures, pressures_in_slices
 from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse, KindPressures
+from ltca.contact.contact_kind import CELLS, ContactKind, ContactKinds, Separation
 from ltca.contact.end_pressure import largest_pressure
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import CELLS, ContactKind, ContactKinds, Separation
 from ltca.drive.parts import Drive
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pair_motion import FlankMotion
@@ -33,7 +33,7 @@ from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.sliced_contact import Exactness, SlicedContact, slice_heights, slice_means
 from ltca.laws.spring import SpringLaw
-from ltca.laws.width_pressure import solve_along_width
+from validation.methods.grid_pressures import solve_along_width
 from validation.methods.pressed_grid import press, recover_patches
 
 STATIONS_PER_WAVE = 4096

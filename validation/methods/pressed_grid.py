@@ -4,7 +4,7 @@ Where the edge of the contact falls within a cell changes the load on 12 cells p
 in ``tests/validation/methods/test_pressed_grid.py``).
 
 **A load depends on approach, radius and place alone**, never on earlier solutions. The grids of a contact follow
-from the half-width expected at its approach (`ltca.contact.grid_ladder`); near the boundary of two rungs the load is a weighted
+from the half-width expected at its approach (`ltca.contact.fitted_grid`); near the boundary of two rungs the load is a weighted
 mean of both grids, continuous with its slope, so Newton's method converges. The separation of a flank is interpolated between
 fixed places.
 
@@ -22,25 +22,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ltca.arrays import BoolArray, FloatArray, freeze
-from ltca.contact.grid_ladder import (
+from ltca.contact.contact_kind import ContactKind, Separation
+from ltca.contact.fitted_grid import (
     BLEND,
     GridRung,
+    aligned_relief,
+    expected_cells,
     find_patch_length,
     find_reach_place,
     find_width_place,
-    smooth_step,
-)
-from ltca.contact.pressure_cells import PatchSolution
-from ltca.contact.tracked_grid import (
-    ContactKind,
-    Separation,
-    expected_cells,
-    patch_solution,
     rung_grid,
-    scaled_areas,
+    smooth_step,
     unit_separations,
 )
-from ltca.contact.unilateral import UnilateralSolution, solve_unilateral_contact
+from ltca.contact.pressure_cells import PatchPressure
+from ltca.contact.unilateral import solve_unilateral_contact
 from ltca.geometry.length_profile import SummedProfile
 
 
@@ -164,22 +160,18 @@ def press(kind: ContactKind, separation: Separation, approach: float, start: Seq
 
 def recover_patches(
     kind: ContactKind, separation: Separation, approach: float, start: Sequence[GridPiece] = ()
-) -> list[tuple[float, PatchSolution]]:
+) -> list[tuple[float, PatchPressure]]:
     """Return the shares and the pressures of a contact on each of its grids; arguments as for `press`."""
     patches = []
     weights = separation.weights
     for rung, share in find_shares(kind.length, kind.generator, separation.effective_radius, approach).items():
         piece = _settle(kind, rung, separation, approach, start)
         closing = approach / find_patch_length(kind.length, rung.reach_rung)
-        solved = UnilateralSolution(
-            pressure=np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0),
-            active=piece.active,
-            opening=closing * piece.opening_rate - piece.opening_taken[:, : weights.size] @ weights,
-            rate=piece.rate,
-            history=(),
-        )
-        unit = unit_separations(kind, rung, separation) @ weights
-        patches.append((share, patch_solution(kind, rung, unit, approach, solved)))
+        pressure = np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0)
+        grid = rung_grid(kind, rung)
+        scaled = grid.scaled(find_patch_length(kind.length, rung.reach_rung))
+        patch = PatchPressure(grid=scaled, pressure=kind.contact_modulus * pressure.reshape(grid.shape))
+        patches.append((share, patch))
     return patches
 
 
@@ -187,8 +179,10 @@ def _settle(
     kind: ContactKind, rung: GridRung, separation: Separation, approach: float, start: Sequence[GridPiece]
 ) -> GridPiece:
     """Return the piece of one grid that holds at an approach: one of `start` if it does, otherwise solved from it."""
-    weights, closing = separation.weights, approach / find_patch_length(kind.length, rung.reach_rung)
-    areas = scaled_areas(kind, rung)
+    length = find_patch_length(kind.length, rung.reach_rung)
+    weights, closing = separation.weights, approach / length
+    grid = rung_grid(kind, rung)
+    areas = np.pi * grid.areas.ravel()
     active = None
     for piece in start:
         if piece.grid == rung:
@@ -200,9 +194,9 @@ def _settle(
     if active is None:
         # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
         near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
-        active = near[0].active if near else expected_cells(kind, rung, separation.effective_radius, approach)
-    units = unit_separations(kind, rung, separation)
-    influence = rung_grid(kind, rung).influence
+        active = near[0].active if near else expected_cells(kind, rung, separation.effective_radius, approach).ravel()
+    units = unit_separations(grid, separation, length, aligned_relief(kind))
+    influence = grid.influence
     found = solve_unilateral_contact(
         influence,
         (closing - units @ weights) * areas,

@@ -18,7 +18,7 @@ from fem.errors import MeshError
 from fem.mesh.element_size import Refinement
 from fem.mesh.triangulation import mesh_circle, mesh_ring
 from fem.shapes import CircleCurve, CircleShape, DriveShapes, RingShape
-from ltca.contact.hertz import line_contact_stress
+from validation.hertz import line_contact_stress
 
 
 def hertz_field(body, half_width, peak):

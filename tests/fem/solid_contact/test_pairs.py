@@ -9,16 +9,16 @@ from fem.errors import MeshError
 from fem.solid_contact.pair_files import label_pair, summarise_pair, tabulate_pair
 from fem.solid_contact.pair_shapes import PAIRS, SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, grade_heights, solve_pair
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.free_end import free_end_factor
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import DriveError
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
-from ltca.laws.width_pressure import solve_along_width
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from validation.methods.grid_pressures import solve_along_width
 
 STEEL = Material(youngs_modulus=210e3, poisson_ratio=0.3)
 MODULUS = contact_modulus(STEEL, STEEL)

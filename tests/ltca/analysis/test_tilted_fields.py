@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.tilted_fields import solve_tilted
-from ltca.contact.tracked_grid import ContactKinds
+from ltca.contact.contact_kind import ContactKinds
 from ltca.reading.drive_file import load_drive
 
 RADIUS, LOAD = 4.0, 2000.0

@@ -13,11 +13,12 @@ from scipy.optimize import brentq
 
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import finite_length_approach
-from ltca.contact.hertz import cylinder_approach, half_plane_approach, line_half_width, strip_approach
+from ltca.contact.hertz import line_half_width
 from ltca.drive.parts import Material, Materials
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
-from ltca.testing.closed_form_bodies import CROSS_SHARE
+from ltca.testing.closed_form_bodies import CROSS_SHARE, cylinder_approach, half_plane_approach
+from validation.hertz import strip_approach
 
 ANGLES = np.array([0.0, 0.5])
 DEPTH = 300.0

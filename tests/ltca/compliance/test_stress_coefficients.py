@@ -13,11 +13,11 @@ from ltca.compliance import wall_stress
 from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
 from ltca.compliance.wall_stress import CLEAR_HALF_WIDTHS, wall_profiles, wall_stresses
-from ltca.contact.hertz import line_contact_stress
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear
 from ltca.errors import CycloError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.testing.closed_form_bodies import closed_form_coefficients
+from validation.hertz import line_contact_stress
 
 ANGLES = np.array([0.0, 0.5, 1.7])
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ltca.contact.contact_kind import ContactKind
 from ltca.contact.end_pressure import largest_pressure_ratio
-from ltca.contact.tracked_grid import ContactKind
 from ltca.drive.parts import LengthProfile
 from ltca.geometry.length_profile import generator_profile
 

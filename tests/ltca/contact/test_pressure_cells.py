@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,18 @@ def cylinder(approach, radius=2.0, **options):
     return solve_cylinder_patch(LENGTH, radius, MODULUS, approach, **options)
 
 
+def half_of(grid):
+    """The grid without symmetry along the profile."""
+    x = grid.x_edges
+    return replace(grid, x_edges=np.concatenate([-x[:0:-1], x]), symmetric_x=False)
+
+
+def whole_of(grid):
+    """The grid without symmetry."""
+    y = grid.y_edges
+    return replace(half_of(grid), y_edges=np.concatenate([-y[:0:-1], y]), symmetric_y=False)
+
+
 def test_load_is_the_derivative_of_the_energy_on_a_grid():
     solution = cylinder(4e-3)
     separation = solution.grid.cell_means(parabolic_separation(2.0))
@@ -27,15 +41,6 @@ def test_load_is_the_derivative_of_the_energy_on_a_grid():
     ahead, behind = (solve_patch(solution.grid, separation, MODULUS, 4e-3 + s) for s in (step, -step))
     # central difference of a function with kinks in its second derivative only: error far below 1e-6
     assert (ahead.energy - behind.energy) / (2 * step) == pytest.approx(solution.load, rel=1e-7)
-
-
-def test_stiffness_is_the_derivative_of_the_load_while_the_contact_cells_stay():
-    solution = cylinder(4e-3)
-    separation = solution.grid.cell_means(parabolic_separation(2.0))
-    step = 1e-9
-    ahead = solve_patch(solution.grid, separation, MODULUS, 4e-3 + step)
-    assert np.array_equal(ahead.contact, solution.contact)
-    assert (ahead.load - solution.load) / step == pytest.approx(solution.stiffness, rel=1e-5)
 
 
 def test_energy_is_the_work_done_by_the_load():
@@ -60,26 +65,24 @@ def test_complementarity_holds_on_every_cell():
 
 def test_whole_grid_gives_the_quarter_solution():
     quarter = cylinder(4e-3, cells=8)
-    grid = quarter.grid.whole()
+    grid = whole_of(quarter.grid)
     whole = solve_patch(grid, grid.cell_means(parabolic_separation(2.0)), MODULUS, 4e-3)
     # the matrices differ by the 4e-6 of the far-pair quadrature
     assert whole.load == pytest.approx(quarter.load, rel=1e-5)
-    assert whole.stiffness == pytest.approx(quarter.stiffness, rel=1e-5)
     assert whole.half_width == pytest.approx(quarter.half_width, rel=1e-4)
     # the crest is read from a parabola on one side, from the known shape on the other; 8 cells over b
     assert whole.mid_pressure == pytest.approx(quarter.mid_pressure, rel=1e-3)
 
 
 def test_half_grid_serves_separations_that_lean():
-    whole = cylinder(4e-3, cells=8).grid.whole()
-    half = cylinder(4e-3, cells=8).grid.half()
+    whole = whole_of(cylinder(4e-3, cells=8).grid)
+    half = half_of(cylinder(4e-3, cells=8).grid)
 
     def leaning(x, y):
         return x**2 / 4.0 * (1.0 - 2.0 * x) + 1e-4 * y**2
 
     first, second = (solve_patch(g, g.cell_means(leaning), MODULUS, 4e-3) for g in (whole, half))
     assert second.load == pytest.approx(first.load, rel=1e-5)
-    assert second.stiffness == pytest.approx(first.stiffness, rel=1e-5)
     assert second.mid_pressure == pytest.approx(first.mid_pressure, rel=1e-4)
     for ours, theirs in zip(second.unfolded(), first.unfolded(), strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=2e-3, atol=1e-9)
@@ -90,7 +93,7 @@ def test_the_unfolded_pressure_carries_the_load():
     x, y, pressure = solution.unfolded()
     assert np.all(np.diff(x) > 0)
     assert np.all(np.diff(y) > 0)
-    assert float(np.sum(pressure * solution.grid.whole().areas)) == pytest.approx(solution.load, rel=1e-12)
+    assert float(np.sum(pressure * whole_of(solution.grid).areas)) == pytest.approx(solution.load, rel=1e-12)
     assert np.array_equal(pressure, pressure[::-1, ::-1])
 
 
@@ -102,7 +105,7 @@ def test_a_sheared_separation_moves_the_contact_and_keeps_the_load():
     width = float(base.grid.x_edges[1])
     cells = round(1.5 * base.half_width / width)
     edges = width * np.arange(-cells, cells + 1)
-    y = base.grid.whole().y_edges
+    y = whole_of(base.grid).y_edges
     straight = PatchGrid(x_edges=edges, y_edges=y, symmetric_x=False, symmetric_y=False)
     moved = PatchGrid(x_edges=edges + shift, y_edges=y, symmetric_x=False, symmetric_y=False)
 
@@ -119,7 +122,7 @@ def test_a_sheared_separation_moves_the_contact_and_keeps_the_load():
 
 
 def test_a_lopsided_separation_carries_more_on_the_flatter_side():
-    grid = cylinder(4e-3, cells=8).grid.whole()
+    grid = whole_of(cylinder(4e-3, cells=8).grid)
 
     def cubic(x, y):
         return x**2 / 4.0 * (1.0 - 2.0 * x) + 0.0 * y
@@ -142,8 +145,8 @@ def test_halving_the_grid(radius, approach):
 
 def test_ends_carry_a_peak_that_grows_with_finer_cells_and_bulge():
     coarse, fine = cylinder(4e-3, cells=8), cylinder(4e-3, cells=16)
-    assert fine.grid.end_cell < coarse.grid.end_cell
-    assert fine.max_pressure > 1.5 * coarse.max_pressure > 1.5 * coarse.mid_pressure
+    assert np.diff(fine.grid.y_edges)[-1] < np.diff(coarse.grid.y_edges)[-1]
+    assert fine.pressure.max() > 1.5 * coarse.pressure.max() > 1.5 * coarse.mid_pressure
     reach = fine.contact.sum(axis=0)
     assert reach[-1] > 1.3 * reach[0]
 
@@ -151,8 +154,8 @@ def test_ends_carry_a_peak_that_grows_with_finer_cells_and_bulge():
 def test_open_patch_gives_zeros():
     grid = cylinder(4e-3, cells=8).grid
     solution = solve_patch(grid, grid.cell_means(parabolic_separation(2.0)), MODULUS, -1e-3)
-    assert solution.load == solution.stiffness == solution.energy == 0.0
-    assert solution.half_width == solution.mid_pressure == solution.max_pressure == 0.0
+    assert solution.load == solution.energy == 0.0
+    assert solution.half_width == solution.mid_pressure == solution.pressure.max() == 0.0
 
 
 def test_free_ends_take_the_peak_away_and_soften_the_contact():
@@ -160,7 +163,7 @@ def test_free_ends_take_the_peak_away_and_soften_the_contact():
     mirrored = cylinder(5e-3, end_factor=1.0)
     corrected = cylinder(5e-3, end_factor=free_end_factor(0.3))
     # plain mirroring makes the load almost even along the length
-    assert mirrored.max_pressure == pytest.approx(mirrored.mid_pressure, rel=0.02)
+    assert mirrored.pressure.max() == pytest.approx(mirrored.mid_pressure, rel=0.02)
     assert corrected.load < mirrored.load < half_space.load
     # the sizes stated in ltca.contact.free_end
     assert corrected.load / half_space.load == pytest.approx(0.742, abs=0.005)

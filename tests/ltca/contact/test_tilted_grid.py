@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import find_patch, press_tilted
-from ltca.contact.tracked_grid import ContactKind, Separation
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
 from validation.methods.pressed_grid import press
 

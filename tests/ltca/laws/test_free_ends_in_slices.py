@@ -145,7 +145,7 @@ def test_bodies_count_by_their_compliance_and_length():
 
 
 def test_pressures_at_flush_ends_have_no_peak():
-    from ltca.contact.tracked_grid import ContactKind
+    from ltca.contact.contact_kind import ContactKind
     from ltca.laws.width_pressure import estimate_along_width
 
     found = {}

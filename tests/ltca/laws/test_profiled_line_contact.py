@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.hertz import solve_point_contact
 from ltca.errors import CycloError
 from ltca.geometry.length_profile import CircularCrown, EndRelief, LogarithmicRelief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw, profiled_table, solve_profiled_patch
+from validation.hertz import solve_point_contact
 
 MODULUS = 113_187.0
 CROWN = CircularCrown(length=11.8, crown_radius=3000.0)
@@ -144,5 +144,5 @@ def test_open_contacts_give_zeros(coarse_tables):
 def test_relief_removes_the_end_peak():
     plain = solve_profiled_patch(CircularCrown(length=11.8, crown_radius=1e12), 2.0, MODULUS, 4e-3)
     relieved = solve_profiled_patch(LOGARITHMIC, 2.0, MODULUS, 4e-3)
-    assert plain.max_pressure > 3 * plain.mid_pressure
-    assert relieved.max_pressure < 1.01 * relieved.mid_pressure
+    assert plain.pressure.max() > 3 * plain.mid_pressure
+    assert relieved.pressure.max() < 1.01 * relieved.mid_pressure

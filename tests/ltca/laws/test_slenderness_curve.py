@@ -54,7 +54,7 @@ def test_pieces_with_slopes_join_three_times_differentiably():
 
 
 def test_value_and_derivatives_are_those_of_the_pieces_and_of_each_other():
-    curve = SlendernessCurve.through(2.0 + 0.5 * KNOTS, VALUES, 0.3)
+    curve = SlendernessCurve(2.0, 0.5, quintic_spline_pieces(VALUES), 0.3)
     # inside, on a knot, and beyond both ends (at the very ends the third derivative jumps)
     places = np.array([2.3, 3.7, 4.5, 7.49, -3.0, 11.0])
     value, first, second = curve.value_and_derivatives(places)

@@ -11,10 +11,11 @@ from ltca.drive.parts import WheelPinSeat
 from ltca.drive.single_discs import single_discs
 from ltca.laws.backed import BackedLaw, wheel_pin_seat
 from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.separate_slices import SeparateSlices
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.sliced_seat import BackedLine, SlicedSeat
-from ltca.laws.sliced_spring import SlicedSpring
+from ltca.laws.sliced_seat import MAX_TRIALS, BackedLine, PartStiffness, SlicedSeat, newton_step, shorten_steps
+from ltca.laws.spring import SpringLaw
 from ltca.reading.drive_file import load_drive
 
 MODULUS, LENGTH, SLICES = 113186.8, 10.0, 9
@@ -43,10 +44,10 @@ def test_slices_of_a_seat_are_the_plane_law(play, seat):
     load = np.array([1e-5, 1.0, 100.0, 3e3, 1e4])
     approach, compliance = law.approach_and_compliance(load, play)
     sliced = SlicedSeat.of_law(law, SLICES)
-    found = sliced.press(approach, np.zeros(5), np.full(5, play))
+    found = sliced.respond(approach, np.zeros(5), np.full(5, play))
     np.testing.assert_allclose(found.load, load, rtol=1e-8)
-    np.testing.assert_allclose(found.by_travel * compliance, 1.0, rtol=1e-7)
-    np.testing.assert_allclose(sliced.energy(found.line_load, np.full(5, play)), law.energy(load, play), rtol=1e-8)
+    np.testing.assert_allclose(found.by_approach * compliance, 1.0, rtol=1e-7)
+    np.testing.assert_allclose(sliced.energy(found, np.full(5, play)), law.energy(load, play), rtol=1e-8)
 
 
 @pytest.mark.parametrize("seat", [{}, SLEEVE])
@@ -84,8 +85,8 @@ def test_loads_and_moments_of_loose_pins_are_the_slopes_of_their_energy(seat):
         if name != "energy":
             return getattr(contact, name)
         play = np.broadcast_to(law.play, shape).reshape(-1)
-        seat = law.seat.press(travel.reshape(-1), lean.reshape(-1), play)
-        return law.contact.energy(contact, radius) + law.seat.energy(seat.line_load, play).reshape(shape)
+        seat = law.seat.respond(travel.reshape(-1), lean.reshape(-1), play)
+        return law.contact.energy(contact, radius) + law.seat.energy(seat, play).reshape(shape)
 
     def slope(name, by_tilt):
         return (value(name, step, by_tilt) - value(name, -step, by_tilt)) / (2.0 * step)
@@ -106,7 +107,7 @@ def test_a_pin_leans_in_its_seat_until_both_sides_carry_the_same():
     law = BackedLine(contact=law.contact, seat=law.seat, play=np.full(3, 0.01))
     found, travel, lean = law.solve(delta, theta, radius)
     outside = law.contact.respond(delta - travel, theta - lean, radius)
-    inside = law.seat.press(travel[0], lean[0], np.full(3, 0.01))
+    inside = law.seat.respond(travel[0], lean[0], np.full(3, 0.01))
     for one in (outside.load[0], inside.load):
         np.testing.assert_allclose(one, found.load[0], rtol=1e-9)
     for one in (outside.moment[0], inside.moment):
@@ -119,8 +120,8 @@ def test_a_pin_leans_in_its_seat_until_both_sides_carry_the_same():
 def test_what_a_lead_keeps_open_carries_nothing():
     """Metal of a lead at the end that tilts away beside a contact that carries: neither side touches, and nothing is singular."""
     law = HalfSpaceCompliance.of_drive(loose()).pin_law
-    half = 0.5 * law.length
-    sloped = replace(law.contact, relief=3e-4 * slice_heights(law.length, law.slices) / half)
+    half = 0.5 * LENGTH
+    sloped = replace(law.contact, relief=3e-4 * slice_heights(LENGTH, SLICES) / half)
     law = BackedLine(contact=sloped, seat=law.seat, play=np.full(2, 0.01))
     found = law.respond(np.array([[-7.4e-4, 0.01]]), np.array([[6.4e-4 / half, 0.0]]), np.full((1, 2), 6.0))
     for name in ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt"):
@@ -132,7 +133,8 @@ def test_a_spring_before_a_neat_seat_is_two_springs():
     """Without play a seat is a spring, even along the width: F = δ/(1/k + c), M = θ w²/12/(1/k + c), to 1e-6 (none is 1 pm)."""
     law = wheel_pin_seat(loose())
     spring, compliance = 2e5, float(law.approach_and_compliance(1.0, 0.0)[1])
-    contact = SlicedSpring(stiffness=spring, length=LENGTH, slices=SLICES)
+    relief = np.zeros((SLICES, 4))
+    contact = SeparateSlices(law=SpringLaw(stiffness=spring), length=LENGTH, slices=SLICES, relief=relief)
     both = BackedLine(contact=contact, seat=SlicedSeat.of_law(law, SLICES), play=np.zeros(1))
     delta, theta = np.array([[0.02]]), np.array([[1e-3]])
     found = both.respond(delta, theta, np.ones((1, 1)))
@@ -159,7 +161,7 @@ def test_the_most_loaded_end_of_a_seat_follows_from_load_and_moment():
     sliced = SlicedSeat.of_law(law, SLICES)
     travel, lean = np.array([3e-3, 1e-3, 5e-4, 2e-3]), np.array([2e-4, -2e-4, 4e-4, 0.0])
     play = np.full(4, 0.01)
-    carried = sliced.press(travel, lean, play)
+    carried = sliced.respond(travel, lean, play)
     assert (carried.line_load == 0.0).any()
     found = sliced.heaviest(carried.load, carried.moment, play)
     deepest, _ = law.approach_and_compliance(found, play)
@@ -187,3 +189,42 @@ def test_loose_pins_of_a_batch_have_the_leads_of_their_own_drives():
         alone = law.respond(delta[row : row + 1], theta[row : row + 1], radius[row : row + 1])
         for name in ("load", "moment", "by_approach", "slice_load"):
             np.testing.assert_allclose(getattr(together, name)[row], getattr(alone, name)[0], rtol=1e-12, atol=1e-9)
+
+
+def test_steps_end_where_a_slice_begins_to_carry():
+    """A soft slope of the energy and, from a tenth or a thousandth of the step on, one a billion times as stiff."""
+    soft, stiff, place = 1.0, 1e9, np.array([0.1, 1e-3, 2.0])
+    trials = []
+
+    def move(some, fraction):
+        trials.append(some.size)
+        beyond = np.maximum(fraction - place[some], 0.0)
+        return soft * (fraction - 1.0) + stiff * beyond, soft + stiff * (beyond > 0.0)
+
+    found = shorten_steps(np.full(3, -soft), move)
+    # The least of the energy lies where the stiff part takes the slope off: a billionth beyond the place.
+    assert found == pytest.approx([0.1, 1e-3, 1.0], rel=1e-5)
+    assert len(trials) <= 3 < MAX_TRIALS
+
+
+def test_what_touches_at_one_end_alone_is_not_sent_far():
+    """Both contacts at the same end: turning about it costs nothing, and what is left over there is round-off."""
+    half, stiff = 5.0, 1e5
+    free = PartStiffness(*(np.array([value]) for value in (stiff, stiff * half, stiff * half**2)), half)
+    step, turn, slope = newton_step(np.array([1e-3]), np.array([1e-3 * half + 1e-8]), free)
+    # Along the stiff mode a thousandth of a newton is 1e-8 mm; the free one is held by a millionth of that stiffness.
+    assert abs(step[0] + half * turn[0]) == pytest.approx(1e-8, rel=1e-2)
+    assert half * abs(turn[0]) < 1e-7
+    assert slope[0] < 0.0
+
+
+def test_open_pins_beside_metal_of_a_lead_store_nothing():
+    """Energies of open contacts of slices that do not feel each other were those of the metal of their lead alone."""
+    seat, metal = wheel_pin_seat(loose()), -2e-4 * np.ones((SLICES, 4))
+    springs = SeparateSlices(law=SpringLaw(stiffness=1e5), length=LENGTH, slices=SLICES, relief=metal)
+    law = BackedLine(contact=springs, seat=SlicedSeat.of_law(seat, SLICES), play=np.full(2, 0.01))
+    radius = np.ones((1, 2))
+    found = law.respond(np.array([[-0.01, 0.01]]), np.zeros((1, 2)), radius)
+    energy = law.energy(found, radius)
+    assert (found.load[0, 0], energy[0, 0]) == (0.0, 0.0)
+    assert energy[0, 1] > 0.0

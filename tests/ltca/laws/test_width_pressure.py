@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from ltca.contact.contact_kind import ContactKind, ContactKinds, Separation
 from ltca.contact.hertz import line_peak_pressure
 from ltca.contact.tilted_grid import press_tilted
-from ltca.contact.tracked_grid import ContactKind, ContactKinds, Separation
 from ltca.geometry.length_profile import CircularCrown, SummedProfile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.width_pressure import estimate_along_width, solve_along_width
+from ltca.laws.width_pressure import estimate_along_width
 from ltca.reading.drive_file import load_drive
+from validation.methods.grid_pressures import solve_along_width
 
 LENGTH, MODULUS, RADIUS = 12.0, 115e3, 3.0
 

@@ -11,7 +11,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
-from ltca.contact.tracked_grid import solve_fitted
+from ltca.contact.fitted_grid import solve_fitted
 from ltca.drive.parts import LengthProfile
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from ltca.contact.grid_ladder import BLEND, RUNG, find_patch_length, unit_grid
+from ltca.contact.contact_kind import ContactKind, Separation
+from ltca.contact.fitted_grid import BLEND, RUNG, GridRung, find_patch_length, solve_fitted, unit_grid
 from ltca.contact.pressure_cells import PatchGrid, solve_patch
-from ltca.contact.tracked_grid import ContactKind, Separation, solve_fitted
 from ltca.drive.parts import LengthProfile
 from ltca.geometry.length_profile import generator_profile
 from validation.methods.pressed_grid import press, recover_patches
@@ -58,7 +58,7 @@ def test_where_the_edge_falls_moves_the_load_by_less_than_a_ten_thousandth():
     kind, found = kind_of(), press(kind_of(), parabola(), 8e-3).pieces[0].grid
     loads = []
     for rung in range(found.rung - 2, found.rung + 3):  # ± 10 % of the half-width; contacts keep within 2.5 %
-        shape = unit_grid(rung, 0, cells=12, symmetric=True)
+        shape = unit_grid(GridRung(rung, 0), 12, symmetric=True)
         grid = PatchGrid(x_edges=shape.x_edges * LENGTH, y_edges=shape.y_edges * LENGTH)
         separation = grid.cell_means(lambda x, y: x**2 / (2.0 * RADIUS) + 0.0 * y)
         loads.append(solve_patch(grid, separation, kind.contact_modulus, 8e-3).load)
@@ -132,7 +132,7 @@ def test_the_relief_of_a_cell_is_its_mean_over_the_cell():
     """Relief that grows with y: a contact feels it in every cell where the cell lies, as a grid of its own does."""
     kind, found = kind_of("crowned"), press(kind_of("crowned"), parabola(), 8e-3)
     (piece,) = found.pieces
-    shape = unit_grid(piece.grid.rung, piece.grid.reach_rung, cells=12, symmetric=True)
+    shape = unit_grid(piece.grid, 12, symmetric=True)
     length = find_patch_length(LENGTH, piece.grid.reach_rung)
     grid = PatchGrid(x_edges=shape.x_edges * length, y_edges=shape.y_edges * length)
     separation = grid.cell_means(lambda x, y: x**2 / (2.0 * RADIUS) + kind.generator.relief(y))

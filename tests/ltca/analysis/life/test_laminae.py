@@ -16,11 +16,11 @@ from ltca.analysis.life.laminae import (
     solve_laminae,
     straight_rollers,
 )
-from ltca.contact.hertz import solve_point_contact
 from ltca.drive.parts import LengthProfile
 from ltca.geometry.length_profile import generator_profile
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import solve_profiled_patch
+from validation.hertz import solve_point_contact
 
 LENGTH, RADIUS, RHO, MODULUS = 11.8, 5.0, 1.0 / (1.0 / 5.0 + 1.0 / 19.5), 113_187.0
 
@@ -146,7 +146,7 @@ def test_interpolation_is_that_of_scipy(count):
 
 @pytest.mark.parametrize("number", [RUNGS[0], -27, RUNGS[-1]])
 def test_straight_rollers_of_the_package_are_those_solved(number):
-    """Other processors find other last digits, as of tests/ltca/laws/test_shipped_tables.py."""
+    """Other processors find other last digits, as of tests/validation/test_shipped_tables.py."""
     load, row = straight_rollers()[number]
     solved, found = solve_laminae(None, 1.0, 1.0, APPROACH_RATIO**number)
     assert load == pytest.approx(solved, rel=1e-9)

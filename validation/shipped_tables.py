@@ -1,9 +1,9 @@
 """Makes the tables of cylinders that ship with the package, from solutions on contact grids.
 
-    OPENBLAS_NUM_THREADS=1 python -m ltca.laws.shipped_tables
+    OPENBLAS_NUM_THREADS=1 python -m validation.shipped_tables
 
 writes those of `ltca.laws.line_contact`, `ltca.contact.end_pressure` and `ltca.laws.sliced_line` anew;
-``tests/ltca/laws/test_shipped_tables.py`` compares. That takes some seconds, which every process would spend, and other
+``tests/validation/test_shipped_tables.py`` compares. That takes some seconds, which every process would spend, and other
 processors would find other last digits.
 
 The nodes of the line contact are solutions of `ltca.contact.pressure_cells` on two grids, extrapolated to zero cell size
@@ -17,13 +17,15 @@ import argparse
 import json
 import os
 from collections.abc import Callable
+from dataclasses import asdict
+from functools import partial
 
 import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.contact import end_pressure
-from ltca.contact.pressure_cells import expected_half_width, solve_cylinder_patch
-from ltca.contact.tracked_grid import CELLS as TRACKED_CELLS
+from ltca.contact.contact_kind import CELLS as TRACKED_CELLS
+from ltca.contact.pressure_cells import expected_half_width, extrapolate, solve_cylinder_patch
 from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES
 from ltca.laws import line_contact, sliced_contact, sliced_line
 from ltca.laws.line_contact import LONGEST, SHORTEST, LineContactLaw, LineContactTable
@@ -64,19 +66,21 @@ def tabulate_line_contact(
         for _ in range(2):
             guess = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
             half_width = guess.half_width
-        # Both grids must cut the contact at the same place for their difference to extrapolate.
-        coarse = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells // 2, half_width=half_width)
-        fine = solve_cylinder_patch(slenderness, 1.0, 1.0, 1.0, cells=cells, half_width=half_width, start=coarse)
-        row[0] = (fine.energy + _ENERGY_GAIN * (fine.energy - coarse.energy)) / slenderness
-        row[1] = fine.mid_pressure + _FIELD_GAIN * (fine.mid_pressure - coarse.mid_pressure)
-        row[2] = fine.half_width + _FIELD_GAIN * (fine.half_width - coarse.half_width)
-    energy, pressure, half_width_ratio = rows.T
+        solve = partial(solve_cylinder_patch, slenderness, 1.0, 1.0, 1.0)
+        energy, _, *fields = extrapolate(solve, cells, half_width, _ENERGY_GAIN, _FIELD_GAIN)
+        row[:] = energy / slenderness, *fields
+    stored, pressure, half_width_ratio = rows.T
     # A slender contact has δ = q/(π E*) (ln 1/δ + …), so δ E* L/F → −X/π, b² = 4 F ρ/(π E* L) and p = E* b/(2ρ).
     return LineContactTable(
-        inverse_energy=SlendernessCurve.through(places, 1.0 / energy, 2.0 / np.pi),
-        inverse_square_pressure=SlendernessCurve.through(places, pressure**-2, 1.0),
-        inverse_square_half_width=SlendernessCurve.through(places, half_width_ratio**-2, 0.25),
+        inverse_energy=_through(places, 1.0 / stored, 2.0 / np.pi),
+        inverse_square_pressure=_through(places, pressure**-2, 1.0),
+        inverse_square_half_width=_through(places, half_width_ratio**-2, 0.25),
     )
+
+
+def _through(nodes: FloatArray, values: FloatArray, light_slope: float) -> SlendernessCurve:
+    """Curve through positive values at uniform nodes."""
+    return SlendernessCurve(float(nodes[0]), float(nodes[1] - nodes[0]), quintic_spline_pieces(values), light_slope)
 
 
 def tabulate_softer_ends(slices: int, nodes: int = _END_NODES) -> FloatArray:
@@ -126,12 +130,12 @@ def write_tables() -> None:
     """Write the tables into the package."""
     ratio = dict(zip(("nodes", "ratio"), end_pressure.tabulate_cylinder_ratio(TRACKED_CELLS), strict=True))
     contents = {
-        line_contact.TABLE: tabulate_line_contact().content(),
-        end_pressure.TABLE: {name: values.tolist() for name, values in ratio.items()},
-        sliced_line.TABLE: {"softer": {str(slices): tabulate_softer_ends(slices).tolist() for slices in NUMBERS}},
+        line_contact.TABLE: asdict(tabulate_line_contact()),
+        end_pressure.TABLE: ratio,
+        sliced_line.TABLE: {"softer": {str(slices): tabulate_softer_ends(slices) for slices in NUMBERS}},
     }
     for path, content in contents.items():
-        path.write_text(json.dumps(content, indent=0) + "\n", encoding="utf-8", newline="\n")
+        path.write_text(json.dumps(content, indent=0, default=np.ndarray.tolist) + "\n", encoding="utf-8", newline="\n")
 
 
 if __name__ == "__main__":

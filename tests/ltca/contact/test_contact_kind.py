@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from ltca.contact.tracked_grid import ContactKind, ContactKinds
+from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.drive.parts import Material, Materials
 
 

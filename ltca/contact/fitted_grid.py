@@ -1,0 +1,167 @@
+"""Contact grids that fit: shapes in steps of half-width and reach, and the pressure of a contact on the one that fits it best.
+
+An influence matrix depends on the shape of its grid alone, not on its size. Half-width and reach of a contact are rounded to
+steps of 5 % (rungs) and grids have unit length, so one small set of matrices serves all contacts of a drive. The rung follows
+from the half-width *expected* at the approach, never from earlier solutions. `validation.methods.grids` balances drives on such
+grids.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from ltca.arrays import BoolArray, FloatArray
+from ltca.contact.contact_kind import ContactKind, Departure, Separation
+from ltca.contact.pressure_cells import (
+    GRID_ROOM,
+    PatchGrid,
+    PatchPressure,
+    ReliefFunction,
+    expected_half_width,
+    graded_edges,
+    solve_patch,
+)
+from ltca.geometry.length_profile import SummedProfile
+
+RUNG = 0.05
+"""Step of the ladder in ln(half-width)."""
+BLEND = 0.05
+"""Part of a rung about each boundary over which the grids on both sides are blended for a load that is continuous with its slope:
+their loads differ by 1e-4, so blending adds 1 % to the slope, and one contact in twenty costs two grids."""
+SHADES = 5
+"""Steps per rung of the half-width by which initial contact cells of cylinders are kept."""
+END_GRADING = 2.5
+"""Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
+errs by 1e-4 in the load with 12 cells."""
+FREE_GRADING = 1.25
+"""The same of contacts that end within a profile, where pressure falls to zero by itself."""
+FIT = 0.08
+"""Largest error of ln(half-width) of the rung on which `solve_fitted` accepts a contact."""
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+class GridRung(NamedTuple):
+    """Shape of a grid.
+
+    `rung` is ln(half-width/length) in steps of `RUNG`; `reach_rung` is ln(body length/patch length) in such steps, for a
+    profiled contact that ends before the body does.
+    """
+
+    rung: int
+    reach_rung: int
+
+
+@cache
+def unit_grid(rung: GridRung, cells: int, symmetric: bool) -> PatchGrid:
+    """Return the grid of unit length on a rung; its influence matrix is kept with it.
+
+    `cells` are those over the half-width and over half the length; `symmetric` grids have the positive half in x only.
+    """
+    half_width = float(np.exp(rung.rung * RUNG))
+    share = float(np.exp(-8.0 * rung.reach_rung * RUNG))
+    grading = FREE_GRADING + share * (END_GRADING - FREE_GRADING)
+    x = half_width / cells * np.arange(int(np.ceil(GRID_ROOM * cells)) + 1.0)
+    return PatchGrid(
+        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
+        y_edges=graded_edges(1.0, cells, grading),
+        symmetric_x=symmetric,
+    )
+
+
+def rung_grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
+    """Return the grid of unit length on a rung for contacts of a kind."""
+    return unit_grid(rung, kind.cells, kind.symmetric)
+
+
+def smooth_step(part: float) -> float:
+    """Return 0 below 0, 1 above 1, and 3 t² − 2 t³ between."""
+    part = min(max(part, 0.0), 1.0)
+    return part * part * (3.0 - 2.0 * part)
+
+
+def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:
+    """Return ln(body length/overlap) in rungs: how far a profiled contact ends before the body does."""
+    if generator is None:
+        return 0.0
+    return max(0.0, float(np.log(0.5 * length / generator.overlap_half_length(approach))) / RUNG)
+
+
+def find_width_place(length: float, reach_rung: int, effective_radius: float, approach: float) -> float:
+    """Return ln(expected half-width/patch length) in rungs."""
+    patch = find_patch_length(length, reach_rung)
+    return float(np.log(expected_half_width(patch, effective_radius, approach) / patch)) / RUNG
+
+
+def find_patch_length(length: float, reach_rung: int) -> float:
+    """Return the length of the patch on a rung of its reach, mm."""
+    return length * float(np.exp(-reach_rung * RUNG))
+
+
+def expected_cells(kind: ContactKind, rung: GridRung, effective_radius: float, approach: float) -> BoolArray:
+    """Return contact cells to start from on the grid of a rung, shape (nx, ny): of a cylinder of the expected half-width."""
+    if kind.generator is None:
+        width = round(SHADES * find_width_place(kind.length, rung.reach_rung, effective_radius, approach))
+        return _cylinder_cells(width, rung, kind.cells, kind.symmetric)
+    grid = rung_grid(kind, rung)
+    return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1]).reshape(grid.shape)
+
+
+@cache
+def _cylinder_cells(width: int, rung: GridRung, cells: int, symmetric: bool) -> BoolArray:
+    grid, half_width = unit_grid(rung, cells, True), float(np.exp(width * RUNG / SHADES))
+    size = half_width  # √(ρδ)
+    for _ in range(10):
+        size *= half_width / expected_half_width(1.0, size, size)
+    x = grid.x_edges
+    separation = np.repeat((x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * size), grid.shape[1])
+    start = np.repeat(np.abs(grid.x_centres) < half_width, grid.shape[1])
+    found = solve_patch(grid, separation, 1.0, size, start=start).contact
+    return found if symmetric else np.concatenate([found[::-1], found])
+
+
+def unit_separations(
+    grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction | None, middle: float = 0.0
+) -> FloatArray:
+    """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places).
+
+    The patch has a length and a middle along the width, mm; `relief` is that along the width.
+    """
+    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
+    units = np.empty((*grid.shape, separation.weights.size))
+    for number in range(units.shape[2]):
+        along_x = separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
+        units[..., number] = along_x[:, None]
+    if relief is not None:
+        heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
+        units += (relief(middle + length * heights) @ _WEIGHTS / (2.0 * length))[None, :, None]
+    return units.reshape(-1, units.shape[2])
+
+
+def aligned_relief(kind: ContactKind) -> ReliefFunction | None:
+    """Return the relief of contacts that do not tilt: that of their generator."""
+    return None if kind.generator is None else kind.generator.relief
+
+
+def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchPressure:
+    """Return the pressure over a contact on the grid that fits its half-width.
+
+    Approach δ and effective radius ρ are in mm; `departure` gives the separation in mm over the distance along the tangent in
+    mm.
+    """
+    separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
+    reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
+    length = find_patch_length(kind.length, reach)
+    rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
+    start = expected_cells(kind, rung, effective_radius, approach)
+    for trial in range(2):
+        grid = rung_grid(kind, rung)
+        unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)
+        solved = solve_patch(grid, unit, 1.0, approach / length, start=start)
+        place = float(np.log(max(solved.half_width, 1e-300))) / RUNG
+        if trial or solved.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:
+            break
+        rung, start = GridRung(round(place), reach), solved.contact
+    return PatchPressure(grid=grid.scaled(length), pressure=kind.contact_modulus * solved.pressure)
