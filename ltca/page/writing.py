@@ -87,10 +87,12 @@ def _policy(script: str, style: str, live: bool) -> str:
 
 
 def _with_signs(text: str) -> Any:
-    """The text with indices below the line."""
+    """The text with indices below the line; a crank angle is not broken at its equals sign."""
     from markupsafe import Markup, escape
 
-    return Markup(str(escape(text)).replace("φ_C", "φ<sub>C</sub>"))
+    return Markup(
+        str(escape(text)).replace("φ_C = ", "φ_C\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}").replace("φ_C", "φ<sub>C</sub>")
+    )
 
 
 def _with_breaks(text: str) -> Any:

@@ -254,8 +254,8 @@ def optimise(
     """Find the best candidate, for two aims the Pareto front.
 
     `generations` are those of differential evolution, a third of them for each of the weighted problems of a front, of which
-    there are fewer below three generations; `told` is called with the number of candidates of each solved batch. Raises `CycloError` when the drive itself cannot be solved, or no
-    candidate is sound and within the limits.
+    there are fewer below three generations; `told` is called with the number of candidates of each solved batch. Raises
+    `CycloError` when the drive itself cannot be solved, or no candidate is sound and within the limits.
     """
     from scipy.optimize import differential_evolution, minimize
 

@@ -179,7 +179,7 @@ def test_pareto_front_is_the_line_between_the_optima(drive):
 
 @pytest.mark.parametrize(("aims", "most"), [(1, 2 * 32 + 2 * 4), (2, 3 * 2 * 32)])
 def test_a_search_of_one_generation_solved_1440_candidates(drive, aims, most):
-    """Sobol's 32 members and one generation of them, of three weighted problems for two aims; a simplex of 4 for each variable."""
+    """Sobol's 32 members and one generation of them, of three weighted problems for two aims; 4 of a simplex a variable."""
     solved = []
 
     def counted(drives):
