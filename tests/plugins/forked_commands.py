@@ -1,7 +1,7 @@
 """Commands of ``cyclo``, each in a fork of a process that has the libraries already; coefficients on coarse meshes.
 
-Summaries have no extremes between positions, which cost a small run a hundred times as many positions as it asks for, and other
-codes answer as stored: tests of their own compute both.
+Summaries have no extremes between positions, which cost a small run a hundred times as many positions as it asks for; an optimum
+is solved at few positions, torque curves at one crank angle; other codes answer as stored: tests of their own compute these.
 
 A line of the standard input is a command as JSON, ``[words, folder, seconds]``, with the processor time that it may take;
 its answer is a line too, ``[status, told, seconds]``: exit status (negative by a signal), the end of what it printed, and its
@@ -24,6 +24,8 @@ LIBRARIES = (
     "ltca.facade", "ltca.analysis.engines", "ltca.studies.study", "fem.reducer.solution", "fem.coefficients.dataset",
     "xarray", "scipy.optimize", "scipy.interpolate", "scipy.integrate", "matplotlib.figure",
 )  # fmt: skip
+
+FEW_POSITIONS = 17
 
 
 def run_fork(words: list[str], seconds: int) -> int:
@@ -65,9 +67,10 @@ def main() -> None:
     """Answer commands until there are no more."""
     from coarse_derivations import coarse_derivation
 
-    from ltca.analysis import summary
+    from ltca.analysis import summary, torque_curve
     from ltca.compliance import coefficient_files
     from ltca.output.provenance import code_hash
+    from ltca.studies.fine_solution import solve_finely
     from validation.levels.other_code_problems import CODES
 
     for name in LIBRARIES:
@@ -76,6 +79,8 @@ def main() -> None:
     coefficient_files.derivation = coarse_derivation
     coefficient_files.MAX_DERIVATIONS = 1  # in the fork itself: other processes would derive on fine meshes
     summary._refined = lambda analyses: [{} for _ in analyses]
+    solve_finely.__defaults__ = (FEW_POSITIONS,)
+    torque_curve.CURVE_ANGLES = 1
     CODES.update({name: replace(code, installed=lambda: False) for name, code in CODES.items()})
     for line in sys.stdin:
         print(json.dumps(answer(*json.loads(line))), flush=True)
