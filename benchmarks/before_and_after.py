@@ -8,10 +8,10 @@ Both versions read the same drives by ``ltca.load_drive`` and balance them at th
 arc seconds. A larger difference counts as explained where it is less than ten times what the larger residual moves through the
 inverse of the tangent (by 1e-6 of the largest load at most); such are listed. Drives that are refused have to remain refused.
 
-All cases of the shipped drives run with tables, in nine slices, and on ``fe`` and ``hybrid`` with closed-form bodies
-(`ltca.testing.closed_form_bodies`); random drives on half-spaces, every tenth on ``hybrid`` as well; methods of `validation`
-(contact grids, the paper's iteration) by ``ltca.analyse`` on the shipped drives. ``--keep`` stores the results of the commit for
-later comparisons. Exit status 1 if a difference exceeds its bound, 2 for an unknown commit.
+All cases of the shipped drives, or of those that ``--drive`` names, run with tables, in nine slices, and on ``fe`` and ``hybrid``
+with closed-form bodies (`ltca.testing.closed_form_bodies`); random drives on half-spaces, every tenth on ``hybrid`` as well;
+methods of `validation` (contact grids, the paper's iteration) by ``ltca.analyse`` on the shipped drives. ``--keep`` stores the
+results of the commit for later comparisons. Exit status 1 if a difference exceeds its bound, 2 for an unknown commit.
 """
 
 from __future__ import annotations
@@ -28,11 +28,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from summary_numbers import ROOT, commit_of, install  # type: ignore[import-not-found]  # beside this script
+from summary_numbers import ROOT, add_drive_argument, commit_of, install  # type: ignore[import-not-found]  # beside this script
 
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
+from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.drive_file import load_drive
 from ltca.reading.writing import drive_text
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -121,11 +122,11 @@ def jobs_of(
     return [told | {"name": f"{name}, {engine}, {part:g} T", "part": part} for part in parts]
 
 
-def shipped_jobs(folder: Path) -> list[dict[str, Any]]:
-    """Return jobs for all shipped cases on all engines; write the coefficient files of ``fe`` and ``hybrid``."""
+def shipped_jobs(folder: Path, names: list[str]) -> list[dict[str, Any]]:
+    """Return jobs for all cases of shipped drives on all engines; write the coefficient files of ``fe`` and ``hybrid``."""
     jobs = list[dict[str, Any]]()
-    for source in sorted(path.name for path in files("ltca.drives").iterdir() if path.name.endswith(".toml")):
-        name, written = source.removesuffix(".toml"), folder / source
+    for name in names:
+        source, written = f"{name}.toml", folder / f"{name}.toml"
         written.write_text((files("ltca.drives") / source).read_text(encoding="utf-8"), encoding="utf-8")
         for case, drive in load_drive(written).cases.items():
             bodies = bodies_of(drive, folder, f"{name}-{case}")
@@ -190,16 +191,19 @@ def main() -> int:
     """Compare, print the differences, and the largest change within round-off."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", help="commit")
+    add_drive_argument(parser)
     parser.add_argument("--count", type=int, default=800, help="number of random drives (800)")
     parser.add_argument(
         "--keep", type=Path, metavar="FOLDER", help="store the results of the commit here and reuse them"
     )
     arguments = parser.parse_args()
     commit = commit_of(parser, arguments.before)
+    names = sorted(set(arguments.drive or SHIPPED_DRIVES))
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        jobs = shipped_jobs(folder) + random_jobs(folder, arguments.count)
-        kept = (arguments.keep or folder) / f"{commit[:12]}-{arguments.count}.npz"
+        jobs = shipped_jobs(folder, names) + random_jobs(folder, arguments.count)
+        asked = "-".join([commit[:12], str(arguments.count), *(names if arguments.drive else [])])
+        kept = (arguments.keep or folder) / f"{asked}.npz"
         if kept.exists():
             with np.load(kept) as content:
                 before = dict(content)

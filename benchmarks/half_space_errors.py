@@ -49,12 +49,21 @@ def decisive(drive: Drive, engine: Engine, positions: int) -> dict[str, float]:
 def main() -> None:
     """Measure, print and write."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--write", action="store_true", help="replace the ratios that are told")
+    parser.add_argument("--write", action="store_true", help="replace the ratios that are told, of all drives")
+    parser.add_argument(
+        "--drive",
+        action="append",
+        choices=SHIPPED_DRIVES,
+        metavar="NAME",
+        help="repeatable; default all shipped drives",
+    )
     parser.add_argument("--positions", type=int, default=POSITIONS, help=f"of the crank; default {POSITIONS}")
     arguments = parser.parse_args()
+    if arguments.write and arguments.drive:
+        parser.error("--write replaces the ratios of all drives: leave --drive out")
     lines = ["# Half-space by hybrid, first case of each shipped drive: python benchmarks/half_space_errors.py --write"]
     known = measured() if MEASURED.exists() else {}
-    for name in SHIPPED_DRIVES:
+    for name in arguments.drive or SHIPPED_DRIVES:
         drive = next(iter(load_drive(name).cases.values()))
         engines: tuple[Engine, ...] = (HalfSpace(), Hybrid().with_coefficients(drive))
         first, second = (decisive(drive, engine, arguments.positions) for engine in engines)

@@ -27,6 +27,14 @@ PROGRAM = (
 )
 
 
+def add_drive_argument(parser: argparse.ArgumentParser) -> None:
+    """Add an option that names shipped drives; without it there are all."""
+    shipped = sorted(path.stem for path in (ROOT / "ltca" / "drives").glob("*.toml"))
+    parser.add_argument(
+        "--drive", action="append", choices=shipped, metavar="NAME", help="shipped drive, repeatable; default all"
+    )
+
+
 def commit_of(parser: argparse.ArgumentParser, revision: str) -> str:
     """Return the hash of a git revision; exit with a message if it does not exist."""
     words = ["git", "rev-parse", "--verify", "--quiet", "--end-of-options", f"{revision}^{{commit}}"]
@@ -105,6 +113,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("before", help="commit")
     parser.add_argument("after", nargs="?", help="commit; default the working tree")
+    add_drive_argument(parser)
     parser.add_argument("--positions", type=int, default=360)
     parser.add_argument("--beyond", type=float, default=1e-9, help="relative change from which a scalar is listed")
     arguments = parser.parse_args()
@@ -114,7 +123,8 @@ def main() -> None:
         folder = Path(name)
         sites = [install(before, folder / "before"), install(after, folder / "after")]
         drives = {path.stem: path for site in sites for path in sorted((site / "ltca" / "drives").glob("*.toml"))}
-        for number, (drive, own) in enumerate(sorted(drives.items())):
+        chosen = {name: drives[name] for name in sorted(arguments.drive or drives)}
+        for number, (drive, own) in enumerate(chosen.items()):
             found = []
             for side, site in zip(("before", "after"), sites, strict=True):
                 shipped = site / "ltca" / "drives" / f"{drive}.toml"

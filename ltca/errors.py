@@ -149,6 +149,28 @@ def shortened(value: Any, most: int = 60) -> str:
     return text if len(text) <= most else text[: most - 3] + "..."
 
 
+def as_sentences(error: str, most: int = 300) -> str:
+    """Return a message of several lines as one, cut between words when it is long.
+
+    Parameters
+    ----------
+    error : str
+        What an error says: of several mistakes the first line has their number, each other one a mistake.
+    most : int
+        Signs.
+
+    Examples
+    --------
+    >>> as_sentences("2 mistakes\\n  a: too small\\n  b: too large")
+    '2 mistakes: a: too small; b: too large'
+    >>> as_sentences("must be at most 4 mm", 15)
+    'must be at …'
+    """
+    head, *others = [" ".join(line.split()) for line in error.splitlines() if line.strip()] or [""]
+    text = f"{head}: {'; '.join(others)}" if others else head
+    return text if len(text) <= most else text[: most - 1].rpartition(" ")[0] + " …"
+
+
 def printable(text: str) -> str:
     """Return a text without control characters, which would act on the terminal; lines are kept apart by a space."""
     if text.isprintable():

@@ -170,9 +170,8 @@ class SlicedContact:
         slices = self.slice_load.shape[-1]
         by_approach, by_tilt = self.near[..., 2 + slices : 2 + 2 * slices], self.near[..., 2 + 2 * slices :]
         added = approach[..., None] * by_approach + tilt[..., None] * by_tilt
-        grown = np.divide(
-            self.slice_load + added, self.slice_load, out=np.ones(added.shape), where=self.slice_load > 0.0
-        )
+        slice_load = np.maximum(self.slice_load + added, 0.0)  # one that opens on the way does not pull
+        grown = np.divide(slice_load, self.slice_load, out=np.ones(added.shape), where=self.slice_load > 0.0)
         near = self.near.copy()
         near[..., 0] += approach
         near[..., 1] += tilt
@@ -181,7 +180,7 @@ class SlicedContact:
             self,
             load=force,
             moment=moment,
-            slice_load=self.slice_load + added,
+            slice_load=slice_load,
             line_load=self.line_load * grown[..., None],
             near=near,
         )

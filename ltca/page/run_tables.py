@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 Summaries = Mapping[str, Mapping[str, float | None]]
 
 GROUPS = ("loads", "pressures", "transmission", "losses", "rest")
+ELSEWHERE = ("cycloid_stage_stiffness", "reducer_stiffness")
+"""Scalars that the section on the wind-up has, least and largest."""
 ORDERS_SHOWN = 8
 """Orders of the transmission error in the table."""
 ORDER_TOLERANCE = 1e-9
@@ -42,7 +44,7 @@ def summary_tables(drives: Mapping[str, Drive], summaries: Summaries) -> dict[st
     rows: dict[str, list[list[Cell]]] = {name: [] for name in GROUPS}
     for row in rows_of(whole, yields=bool(yields)):
         values = [refined_value(case, row.key) for case in whole.values()]
-        if all(value is None for value in values):
+        if all(value is None for value in values) or row.name in ELSEWHERE:
             continue
         rows[_group(row)].append(
             [word(row.title), *(number(value, f"{{:{row.digits}}}", row.unit) for value in values)]

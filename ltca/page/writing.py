@@ -16,6 +16,8 @@ from ltca.output.files import whole_file
 
 SCRIPTS = ("svg", "tables")
 """Scripts of every page, in the order they are joined."""
+UNBROKEN = re.compile(r"φ_C = |\d %")
+"""Where no line may end."""
 BREAK = re.compile(r"(?<=[a-z0-9])[._](?=[a-z0-9])")
 """Where the name of a field may go on in the next line."""
 
@@ -87,10 +89,11 @@ def _policy(script: str, style: str, live: bool) -> str:
 
 
 def _with_signs(text: str) -> Any:
-    """The text with indices below the line."""
+    """The text with indices below the line; lines are not broken before a per cent sign or about that of a crank angle."""
     from markupsafe import Markup, escape
 
-    return Markup(str(escape(text)).replace("φ_C", "φ<sub>C</sub>"))
+    whole = UNBROKEN.sub(lambda found: found[0].replace(" ", "\N{NO-BREAK SPACE}"), str(escape(text)))
+    return Markup(whole.replace("φ_C", "φ<sub>C</sub>"))
 
 
 def _with_breaks(text: str) -> Any:

@@ -36,7 +36,7 @@ BROKEN = 1e3
 """Rank of a candidate just beyond a limit; aims are scaled to the drive's own value, so all sound ones stay below."""
 UNSOUND = 1e6
 WEIGHTS = 9
-"""Weighted problems behind a Pareto front."""
+"""Weighted problems behind a Pareto front, from three generations."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -253,9 +253,9 @@ def optimise(
 ) -> Optimum:
     """Find the best candidate, for two aims the Pareto front.
 
-    `generations` are those of differential evolution, a third of them for each of the weighted problems of a front; `told` is
-    called with the number of candidates of each solved batch. Raises `CycloError` when the drive itself cannot be solved, or no
-    candidate is sound and within the limits.
+    `generations` are those of differential evolution, a third of them for each of the weighted problems of a front, of which
+    there are fewer below three generations; `told` is called with the number of candidates of each solved batch. Raises
+    `CycloError` when the drive itself cannot be solved, or no candidate is sound and within the limits.
     """
     from scipy.optimize import differential_evolution, minimize
 
@@ -266,8 +266,8 @@ def optimise(
     scale = np.maximum(np.abs(start[:aims]), 1e-300)
     archive = _Archive(problem=problem, analysis=analysis, scale=scale, told=told)
     count = len(problem.variables)
-    maxiter, popsize, simplex = _effort(problem, generations)
-    shares = [1.0] if aims == 1 else np.linspace(0.03, 0.97, WEIGHTS)
+    problems, maxiter, popsize, simplex = _effort(problem, generations)
+    shares = [1.0] if aims == 1 else np.linspace(0.03, 0.97, problems)
     for number, share in enumerate(shares):
         weights = np.ones(1) if aims == 1 else np.array([share, 1.0 - share])
 
@@ -297,20 +297,21 @@ def optimise(
     return _outcome(archive, start, aims)
 
 
-def _effort(problem: Problem, generations: int) -> tuple[int, int, int]:
-    """Generations, candidates of each for every variable, candidates of the simplex."""
+def _effort(problem: Problem, generations: int) -> tuple[int, int, int, int]:
+    """Weighted problems, generations of each, candidates of a generation for every variable, candidates of the simplex."""
     count = len(problem.variables)
+    members = max(5, 24 // count)
     if len(problem.aims) == 1:
-        return generations, max(5, 24 // count), 40 * count
-    return max(4, generations // 3), max(5, 24 // count), 0
+        return 1, generations, members, 4 * min(generations, 10) * count
+    return min(WEIGHTS, 3 * generations), max(1, generations // 3), members, 0
 
 
 def most_candidates(problem: Problem, generations: int) -> int:
     """Return how many candidates a search may solve at most."""
-    maxiter, popsize, simplex = _effort(problem, generations)
+    problems, maxiter, popsize, simplex = _effort(problem, generations)
     # a Sobol sequence has a power of two of members
     members = 1 << (popsize * len(problem.variables) - 1).bit_length()
-    return (1 if len(problem.aims) == 1 else WEIGHTS) * members * (maxiter + 1) + simplex
+    return problems * members * (maxiter + 1) + simplex
 
 
 def varies_shape(problem: Problem, engine: Engine) -> bool:

@@ -1,7 +1,11 @@
 """Commands of ``cyclo``, each in a fork of a process that has the libraries already; coefficients on coarse meshes.
 
-A line of the standard input is a command as JSON, ``[words, folder, seconds]``; its answer is a line too, ``[status, told,
-seconds]``: exit status (negative by a signal), the end of what it printed, and its processor time with that of its processes.
+Summaries have no extremes between positions, which cost a small run a hundred times as many positions as it asks for; an optimum
+is solved at few positions, torque curves at one crank angle; other codes answer as stored: tests of their own compute these.
+
+A line of the standard input is a command as JSON, ``[words, folder, seconds]``, with the processor time that it may take;
+its answer is a line too, ``[status, told, seconds]``: exit status (negative by a signal), the end of what it printed, and its
+processor time with that of its processes.
 """
 
 from __future__ import annotations
@@ -9,9 +13,11 @@ from __future__ import annotations
 import json
 import multiprocessing.util
 import os
+import resource
 import signal
 import sys
 import tempfile
+from dataclasses import replace
 from importlib import import_module
 
 LIBRARIES = (
@@ -19,12 +25,15 @@ LIBRARIES = (
     "xarray", "scipy.optimize", "scipy.interpolate", "scipy.integrate", "matplotlib.figure",
 )  # fmt: skip
 
+FEW_POSITIONS = 17
+
 
 def run_fork(words: list[str], seconds: int) -> int:
     """Run a command in this process, a fork, and return its exit status."""
     from ltca.commands.program import main
 
-    signal.alarm(seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+    signal.alarm(10 * seconds)  # of one that waits for ever
     try:
         return main(words)
     except SystemExit as end:
@@ -58,14 +67,21 @@ def main() -> None:
     """Answer commands until there are no more."""
     from coarse_derivations import coarse_derivation
 
+    from ltca.analysis import summary, torque_curve
     from ltca.compliance import coefficient_files
     from ltca.output.provenance import code_hash
+    from ltca.studies.fine_solution import solve_finely
+    from validation.levels.other_code_problems import CODES
 
     for name in LIBRARIES:
         import_module(name)
     code_hash("ltca", "fem")  # kept for all forks
     coefficient_files.derivation = coarse_derivation
     coefficient_files.MAX_DERIVATIONS = 1  # in the fork itself: other processes would derive on fine meshes
+    summary._refined = lambda analyses: [{} for _ in analyses]
+    solve_finely.__defaults__ = (FEW_POSITIONS,)
+    torque_curve.CURVE_ANGLES = 1
+    CODES.update({name: replace(code, installed=lambda: False) for name, code in CODES.items()})
     for line in sys.stdin:
         print(json.dumps(answer(*json.loads(line))), flush=True)
 

@@ -81,7 +81,8 @@ def search_and_write(
     outcome = _outcome(optimum, fine, engine, arguments.positions) | {"candidates_compliance": search.compliance}
     write_json(out / "optimum.json", outcome)
     if not arguments.no_page:
-        told = f"least {' and '.join(problem.aims)} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
+        aims = " and ".join(SCALARS[aim].title for aim in problem.aims)
+        told = f"least {aims} of {case}, {problem.drive.load_words()}, {describe_engine(engine)}"
         write_study_page(optimum_page(name, told, optimum, outcome, front, drive_text(best)), out)
     print(f"{name} {case}, {problem.drive.load_words()}, {describe_engine(engine)}")
     _print(optimum, fine, engine, search, arguments.positions)

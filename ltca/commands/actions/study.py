@@ -14,7 +14,7 @@ from ltca.analysis.extremes import sampling_warning
 from ltca.analysis.half_space_errors import half_space_notes
 from ltca.analysis.light_torque import light_torque_lines
 from ltca.arrays import FloatArray
-from ltca.errors import DriveError
+from ltca.errors import DriveError, as_sentences
 from ltca.geometry.placement import position_angles
 from ltca.output.processes import Terminated
 from ltca.output.progress import progress
@@ -209,10 +209,10 @@ def _print_failures(study: Study, folder: StudyFolder, found: StudySummary) -> N
     print(f"{len(found.failures)} of {study.design.samples} samples failed; their drives: {folder.path / 'samples'}")
     reasons: dict[str, list[int]] = {}
     for sample, message in found.failures:
-        reasons.setdefault(" ".join(message.split()), []).append(sample)
+        reasons.setdefault(as_sentences(message), []).append(sample)
     for message, samples in list(reasons.items())[:MOST_REASONS]:
         more = f" and {len(samples) - 1} more" if len(samples) > 1 else ""
-        print(f"  sample {samples[0]}{more}: {message[:300]}")
+        print(f"  sample {samples[0]}{more}: {message}")
     if len(reasons) > MOST_REASONS:
         print(f"  and {len(reasons) - MOST_REASONS} other reasons")
 

@@ -11,6 +11,7 @@ from ltca.analysis.half_space_errors import half_space_notes
 from ltca.analysis.light_torque import light_torque_lines
 from ltca.arrays import FloatArray
 from ltca.drive.units.quantities import label
+from ltca.errors import as_sentences
 from ltca.page.study_page import Curves, Factor, Mark, Responses, Section, StudyPage
 from ltca.page.tables import Cell, Table, number, word
 from ltca.quantities import SCALARS
@@ -60,7 +61,7 @@ def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatAr
         sections.append(_one_row_a_value(*one, values))
     else:
         sections += [_statistics(found), *_ranking(study, found)]
-    failures = [[word(str(sample)), word(" ".join(message.split())[:300])] for sample, message in found.failures]
+    failures = [[word(str(sample)), word(as_sentences(message))] for sample, message in found.failures]
     if failures:
         table = Table(name="failures", caption="", columns=["sample", "reason"], rows=failures[:MOST_FAILURES], words=1)
         sections.append(Section(heading="Samples without an answer", tables=[table]))

@@ -8,7 +8,7 @@ import pytest
 from ltca.errors import ConvergenceError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import PlaneContactLaw
-from ltca.laws.sliced_contact import slice_heights
+from ltca.laws.sliced_contact import SlicedContact, slice_heights
 from ltca.laws.sliced_line import DATUM, SlicedLine
 
 LENGTH, MODULUS = 10.0, 100e3
@@ -59,6 +59,23 @@ def test_wild_contacts_settle_to_round_off(slices):
         with np.errstate(invalid="ignore"):
             every = np.nan_to_num(np.fmax.reduce(shift, axis=2) - np.fmin.reduce(shift, axis=2))
         assert np.max(every / own.max(axis=(1, 2))[:, None]) < 1e-9
+
+
+def test_slices_that_opened_on_the_way_pulled():
+    """-5e-19 N/mm of one slice made the largest roller pressure of a study no number, and its summary no JSON."""
+    stiffness, z = 1e4, slice_heights(LENGTH, 5)
+    approach, tilt = np.array([[3e-3]]), np.array([[1e-3]])
+    deep = approach[..., None, None] + tilt[..., None, None] * z
+    held = SlicedContact.of_separate(
+        approach, tilt, stiffness * np.maximum(deep, 0.0), stiffness * (deep > 0.0), LENGTH
+    )
+    back = np.array([[-2e-3]])
+    moved = held.moved(back, np.zeros((1, 1)), np.zeros((1, 2, 1)), LENGTH)
+    np.testing.assert_allclose(held.slice_load[0, 0], [0.0, 20.0, 60.0, 100.0, 140.0], rtol=1e-12)
+    for after in (moved.slice_load, moved.line_load):
+        assert np.all(after >= 0.0)
+    # 20 N for each micrometre of the middle of a slice, of 2 mm; the second was 1 µm deep, the others 3, 5 and 7 µm.
+    np.testing.assert_allclose(moved.slice_load[0, 0], [0.0, 0.0, 20.0, 60.0, 100.0], rtol=1e-12)
 
 
 @pytest.mark.family(quick=1)

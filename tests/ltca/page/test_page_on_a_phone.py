@@ -7,7 +7,8 @@ import pytest
 from ltca.analysis.verdict.advice import Driver
 from ltca.page.run_page import run_page
 from ltca.page.studies.check import check_page
-from ltca.page.study_page import study_page
+from ltca.page.study_page import Section, StudyPage, study_page
+from ltca.page.tables import Table, number, word
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import DriveFile, parse_drive, shipped_drive
 
@@ -112,6 +113,29 @@ def test_a_phone_misses_nothing(kind, paper_run, run_of, phone):
     least, most, dark = seen["palette"]
     yellow, navy = "rgb(254,232,56)", "rgb(0,34,78)"
     assert (least, most) == ((navy, yellow) if dark else (yellow, navy))
+
+
+BROKEN = """() => [...document.querySelectorAll("table thead th, table[data-name=inputs] td:nth-child(3)")].filter(cell => {
+  const words = cell.textContent.trim().split(/[\\s-]+/), style = getComputedStyle(cell);
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = `${style.fontWeight} ${style.fontSize} ${style.fontFamily}`;
+  const room = cell.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+  return cell.clientWidth && Math.max(...words.map(word => pen.measureText(word).width)) > room + 2;
+}).map(cell => cell.textContent)"""
+"""Headings and units that are broken within a word."""
+
+
+@pytest.mark.usefixtures("positions_alone")
+def test_units_and_headings_were_broken_within_words(paper_run, phone):
+    """ "N·m" stood above "m", "kg/m" above "³", "mod" above "e"."""
+    page = phone(run_page(paper_run[0]))
+    page.evaluate("document.querySelectorAll('details').forEach(each => { each.open = true; })")
+    assert page.evaluate(BROKEN) == []
+    rows = [[word("1"), word("disc turns (60 %), disc moves along its eccentricity"), *[number(2058.5)] * 3]]
+    columns = ["mode", "what moves", "least, Hz", "mean, Hz", "largest, Hz"]
+    table = Table(name="modes", caption="", columns=columns, rows=rows, words=1)
+    page = phone(study_page(StudyPage(name="x", told="", sections=[Section(heading="Modes", tables=[table])])))
+    assert page.evaluate(BROKEN) == []
 
 
 def test_a_heading_out_of_sight_left_a_gap_above_a_table(paper_run, phone):

@@ -142,6 +142,15 @@ def test_the_verdict_comes_first_and_counts_honestly(page, paper_run):
     assert "no answer" in sentence
 
 
+def test_stiffness_stood_among_the_loads_in_newton_millimetres(page):
+    """As 6.162e+08 N·mm/rad, while the terminal and the section on the wind-up have N·m/′."""
+    loads = page[page.index('data-name="loads"') : page.index('data-name="pressures"')]
+    wound = page[page.index('data-name="wind_up"') : page.index('data-name="life"')]
+    assert "N·mm/rad" not in page
+    assert "stiffness" not in loads
+    assert "stiffness of the cycloid stage there, N·m/′" in wound
+
+
 def test_cases_without_an_answer_are_told(paper_run):
     run = paper_run[0]
     text = run_page(replace(run, checks={"CS-1": run.checks["CS-1"]}))

@@ -13,12 +13,13 @@ import pytest
 from ltca.analysis.torque_curve import torque_curve
 from ltca.analysis.verdict.advice import Driver
 from ltca.commands.actions.study import _value_table
+from ltca.errors import DriveError, as_sentences
 from ltca.page.packing import unpack
 from ltca.page.studies.check import check_page
 from ltca.page.studies.curves import torque_section
 from ltca.page.studies.optimum import optimum_page
 from ltca.page.studies.samples import samples_page, values_of_one_factor
-from ltca.page.study_page import StudyPage, study_page
+from ltca.page.study_page import Section, StudyPage, study_page
 from ltca.page.tables import number, word
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.studies.binding import find_binding
@@ -257,6 +258,27 @@ def test_a_front_is_seen_and_its_designs_open():
     assert content["plots"][0]["range"] == [left, right, low, high]
     assert "1 candidates within the limits lie beyond the axes" in text
     assert numbers["plot/0/x"].tolist() == [1.0, 2.0, 4.0, 3.0, 5.0]
+
+
+def test_reasons_of_samples_were_cut_within_words():
+    """ "2 mistakes crank.eccentricity = …, beyond wha" stood on the page and in the terminal."""
+    problems = [
+        f"disc.thickness = {number} mm: must be greater than 0 mm, or nothing is left of it" for number in range(9)
+    ]
+    text = as_sentences(str(DriveError(problems)))
+    assert text.startswith("9 mistakes: disc.thickness = 0 mm: must be")
+    assert "left of it; disc.thickness = 1 mm" in text
+    assert len(text) <= 300
+    assert text.endswith(" …")
+    assert text.removesuffix(" …").rpartition(" ")[2] in problems[4].split()
+    assert as_sentences("one\n  and  another") == "one: and another"
+
+
+def test_lines_ended_before_a_per_cent_sign_and_within_a_crank_angle():
+    sections = [Section(heading="Modes", notes=["disc turns (60 %), φ_C = 5° < 7°"])]
+    text = study_page(StudyPage(name="x", told="34 % too large", sections=sections))
+    assert "34\N{NO-BREAK SPACE}% too large" in text
+    assert "(60\N{NO-BREAK SPACE}%), φ<sub>C</sub>\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}5° &lt; 7°" in text
 
 
 def test_of_long_fronts_evenly_many_designs_are_told():

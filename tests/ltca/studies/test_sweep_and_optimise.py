@@ -29,6 +29,7 @@ from ltca.studies.optimiser import (
     Problem,
     Variable,
     batch_analysis,
+    most_candidates,
     optimise as search,
     parse_bound,
     parse_variable,
@@ -174,6 +175,24 @@ def test_pareto_front_is_the_line_between_the_optima(drive):
     values = found.values[found.front]
     assert np.all(np.diff(values[:, 0]) > 0.0)
     assert np.all(np.diff(values[:, 1]) < 0.0)
+
+
+@pytest.mark.parametrize(("aims", "most"), [(1, 2 * 32 + 2 * 4), (2, 3 * 2 * 32)])
+def test_a_search_of_one_generation_solved_1440_candidates(drive, aims, most):
+    """Sobol's 32 members and one generation of them, of three weighted problems for two aims; 4 of a simplex a variable."""
+    solved = []
+
+    def counted(drives):
+        solved.append(len(drives))
+        return quadratic(drives)[:, :aims]
+
+    problem = Problem(drive=drive, variables=VARIABLES, aims=("max_pin_load", "max_roller_load")[:aims], limits=())
+    found = search(problem, counted, generations=1)
+    assert most_candidates(problem, 1) == most
+    assert 64 < sum(solved) - 1 <= most
+    assert found.front.size >= aims
+    # As before from ten generations, a front from twelve.
+    assert most_candidates(problem, 40) == (41 * 32 + 80 if aims == 1 else 9 * 14 * 32)
 
 
 def test_names_ranges_and_limits(drive):
