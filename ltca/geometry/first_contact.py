@@ -23,6 +23,8 @@ TOUCHING = 1e-12
 """Interference that counts as touching, by the pin circle radius: some thousand times the round-off."""
 ROUND_OFF = 1e-15
 """Rotation at which bisections end, rad."""
+QUADRATIC = 1e-9
+"""Step of Newton's method behind which nothing is left but its square, rad."""
 MAX_ITERATIONS = 60
 """Newton steps, and bisections."""
 
@@ -161,25 +163,29 @@ def _farthest_free(
     Newton's method between a rotation where a pin presses and one where none does, with bisection where it leaves them. Where
     all pins touch at the start the function is zero there, too: a root finder would stay.
     """
+    approach, slope = _approaches(geometry, angle, coordinate, start)
     # Where all touch at the start, round-off of their approaches must not count.
-    level = np.maximum(_largest_approach(geometry, angle, coordinate, start)[0], 0.0)
-    step = sense * _quarter_pitch(geometry)
-    inside, outside = start, start + step
-    outside = np.where(_largest_approach(geometry, angle, coordinate, outside)[0] > level, outside, outside + step)
-    largest, slope, pin = _largest_approach(geometry, angle, coordinate, outside)
-    stops, place = largest > level, outside
+    level = np.maximum(approach.max(axis=1), 0.0)
+    inside, outside = start, start + 2.0 * sense * _quarter_pitch(geometry)
+    rate = sense * slope
+    travel = np.divide(-approach, rate, out=np.full(rate.shape, np.inf), where=(rate > 0.0) & (approach < 0.0)).min(
+        axis=1
+    )
+    place = np.where(travel < np.abs(outside - start), start + sense * travel, 0.5 * (inside + outside))
+    going, stops = np.ones(angle.size, dtype=bool), np.zeros(angle.size, dtype=bool)
     for _ in range(MAX_ITERATIONS):
-        newton = place - (largest - level) / np.where(slope == 0.0, np.nan, slope)
-        within = sense * (newton - inside) > -ROUND_OFF
-        within &= sense * (newton - outside) < ROUND_OFF
-        following = np.where(within, newton, 0.5 * (inside + outside))
-        moves = np.abs(following - place) >= ROUND_OFF
-        if not np.any(moves & stops):
-            break
-        place = np.where(moves, following, place)
-        largest, slope, pin = _largest_approach(geometry, angle, coordinate, place)
+        largest, turning, pin = _largest_approach(geometry, angle, coordinate, place)
         over = largest > level
         inside, outside = np.where(over, inside, place), np.where(over, place, outside)
+        newton = place - (largest - level) / np.where(turning == 0.0, np.nan, turning)
+        within = (sense * (newton - inside) > -ROUND_OFF) & (sense * (newton - outside) < ROUND_OFF)
+        following = np.where(within, newton, 0.5 * (inside + outside))
+        moved, place = np.abs(following - place), np.where(going, following, place)
+        ends = moved < np.where(within, QUADRATIC, ROUND_OFF)
+        stops |= going & (over | ends & within)
+        going &= ~ends
+        if not going.any():
+            break
     return place, pin, stops
 
 

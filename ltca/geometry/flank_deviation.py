@@ -70,11 +70,8 @@ class ProfileDeviation:
             first -= order * wave.imag
             second -= order * order * wave.real
         if self.knots.size:
-            at = np.mod(np.angle(direction) - self.knots[0], 2.0 * pi) + self.knots[0]
-            piece = np.clip(np.searchsorted(self.knots, at, side="right") - 1, 0, self.pieces.shape[1] - 1)
-            t = at - self.knots[piece]
-            c3, c2, c1, c0 = self.pieces[:, piece]
-            value += c0 + t * (c1 + t * (c2 + t * c3))
-            first += c1 + t * (2.0 * c2 + t * 3.0 * c3)
-            second += 2.0 * c2 + 6.0 * c3 * t
+            from scipy.interpolate import PPoly  # as above
+
+            measured, at = PPoly(self.pieces, self.knots, extrapolate="periodic"), np.angle(direction)
+            value, first, second = value + measured(at), first + measured(at, 1), second + measured(at, 2)
         return value, first, second

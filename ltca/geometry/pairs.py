@@ -286,8 +286,7 @@ class ContactGeometry:
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc_centre = disc.centre
         if coordinates.wheel:  # a displacement of the wheel is one of the disc in the opposite direction
-            wheel = coordinates.wheel_place
-            disc_centre = disc_centre - (pose[:, wheel.start] + 1j * pose[:, wheel.start + 1])[:, None]
+            disc_centre = disc_centre - _vector(pose, coordinates.wheel_place)
         if coordinates.wheel_leans:
             disc_centre = disc_centre - self.plane * self.wheel_lean(pose)
         turned = place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None]
@@ -333,15 +332,11 @@ class ContactGeometry:
 
     def lean(self, pose: FloatArray) -> ComplexArray:
         """Return the lean of the disc, rad, shape (positions, 1)."""
-        place = self.coordinates_of(pose).lean_place
-        return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
+        return _vector(pose, self.coordinates_of(pose).lean_place)
 
     def wheel_lean(self, pose: FloatArray) -> ComplexArray:
         """Return what the wheel leans by in its bearing, rad, shape (positions, 1); zero where it does not."""
-        place = self.coordinates_of(pose).wheel_lean_place
-        if place.start == place.stop:
-            return np.zeros((pose.shape[0], 1), dtype=complex)
-        return np.asarray(pose[:, place.start : place.start + 1] + 1j * pose[:, place.start + 1 : place.stop])
+        return _vector(pose, self.coordinates_of(pose).wheel_lean_place)
 
     def journal_leans(self, pose: FloatArray) -> ComplexArray:
         """Return the lean of every crank in the plane of the disc, rad, shape (positions, cranks)."""
@@ -429,6 +424,12 @@ class ContactGeometry:
             outermost=place.inner_race_radius + place.roller_radii,
             bore_play=place.bore_radius - place.roller_radii,
         )
+
+
+def _vector(pose: FloatArray, place: slice) -> ComplexArray:
+    """Displacement or lean of a part at two places of poses, shape (positions, 1); zero where there are none."""
+    both = pose[:, place]
+    return both[:, :1] + 1j * both[:, 1:] if both.size else np.zeros((pose.shape[0], 1), dtype=complex)
 
 
 def _moved(ring: FloatArray, by_ring: ComplexArray) -> ComplexArray:

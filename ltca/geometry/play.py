@@ -17,7 +17,7 @@ and the middles decide.
 
 The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where wheel or
 cranks have clearance in their bearings, their displacements are common to all discs as well: then one programme has them all,
-with a circle for every bearing (`_JoinedProgramme`). Where parts overlap
+with a circle for every bearing. Where parts overlap
 in every pose the drive is preloaded: parts keep the overlap of the pose in which it is least, and the play is what the other
 parts leave, none where the overlapping ones hold the wheel. Displacements beyond that are those of the loaded analysis.
 
@@ -235,18 +235,16 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
     preloaded, room = np.zeros(angle.size, dtype=bool), np.broadcast_to(np.asarray(overlap, dtype=float), angle.shape)
     loose = any(disc.has_loose_supports for disc in discs)
-    for group in [tuple(discs)] if loose else [(disc,) for disc in discs]:
-        programme = _programme([take_rows(disc, rows) for disc in group], angle[rows], room[rows], loose=loose)
+    # What yields without clearance stands still.
+    still = [(replace(disc, coordinates=Coordinates(leans=disc.stands_askew)),) for disc in discs]
+    for group in [tuple(discs)] if loose else still:
+        programme = _Programme([take_rows(disc, rows) for disc in group], angle[rows], room[rows])
         pose, left = programme.farthest(sense)
         turned = pose[:, WHEEL_ANGLE].reshape(2, -1)
         pressed = np.flatnonzero(np.any(left.reshape(2, -1) > CLOSED, axis=0))
         if pressed.size:
-            beside = _programme(
-                [take_rows(disc, np.tile(pressed, 2)) for disc in group],
-                np.tile(angle[pressed], 2),
-                np.tile(room[pressed], 2),
-                loose=loose,
-            )
+            twice = np.tile(pressed, 2)
+            beside = _Programme([take_rows(disc, twice) for disc in group], angle[twice], room[twice])
             turned[:, pressed] = _beside_preload(beside, pose.reshape(2, -1, pose.shape[1])[:, pressed])
             preloaded[pressed] = True
         forward, backward = np.minimum(forward, turned[0]), np.maximum(backward, turned[1])
@@ -255,16 +253,6 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
-
-
-def _programme(discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray, *, loose: bool) -> _Programme:
-    """The programme of one disc, or of all with wheel and cranks loose in their bearings."""
-    if loose:
-        return _JoinedProgramme(discs, angle, room)
-    (disc,) = discs
-    if not disc.stands_askew:
-        return _Programme(disc, angle, room)
-    return _Programme(replace(disc, coordinates=Coordinates(leans=True)), angle, room, leans=True)
 
 
 def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
@@ -278,16 +266,6 @@ def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
     programme.room = programme.room + RELIEF + np.maximum(-gap, 0.0)
     pose, _ = programme.farthest(np.repeat([1.0, -1.0], rows.size // 2))
     return np.asarray(pose[:, WHEEL_ANGLE].reshape(2, -1))
-
-
-def largest_overlap(geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray) -> FloatArray:
-    """Return the largest overlap of parts of one disc in poses, mm, shape (positions,); negative: the least gap.
-
-    Poses have four coordinates, shape (positions, 4).
-    """
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    gap, _, _ = _Programme(geometry, angle).gaps(np.arange(angle.size), pose)
-    return np.asarray(RELIEF - gap.min(axis=1))
 
 
 def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
@@ -309,7 +287,8 @@ def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
         wheel within half a pin pitch.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    pose, left = _Programme(geometry, angle).farthest(np.full(angle.size, float(sense)))
+    upright = replace(geometry, coordinates=Coordinates())
+    pose, left = _Programme([upright], angle).farthest(np.full(angle.size, float(sense)))
     worst = int(np.argmax(left))
     if left[worst] > CLOSED:
         raise ConvergenceError(
@@ -326,8 +305,7 @@ def loose_poses(discs: Sequence[ContactGeometry], crank_angle: FloatArray, sense
     Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position. Raises as
     `rigid_poses` where nothing stops the wheel.
     """
-    programme, coordinates = _JoinedProgramme(discs, crank_angle, np.zeros(crank_angle.size)), discs[0].coordinates
-    whole = replace(coordinates, discs=len(discs))
+    programme, whole = _Programme(discs, crank_angle), replace(discs[0].coordinates, discs=len(discs))
     pose, _ = programme.farthest(sense)
     found = np.zeros((crank_angle.size, whole.size))
     for number, each in enumerate(programme.maps):
@@ -340,33 +318,15 @@ def _reach(geometry: ContactGeometry) -> FloatArray:
     return np.asarray(geometry.placement.eccentricity.max(axis=-1) * geometry.placement.reduction_ratio)
 
 
-class _Programme:
-    """The gaps of a disc at a batch of positions, and the farthest wheel angle that they allow."""
+class _Disc:
+    """The gaps of one disc at a batch of positions."""
 
-    def __init__(
-        self, geometry: ContactGeometry, angle: FloatArray, room: FloatArray | None = None, *, leans: bool = False
-    ) -> None:
-        place = geometry.placement
+    def __init__(self, geometry: ContactGeometry, angle: FloatArray, *, leans: bool) -> None:
         self.geometry, self.angle = geometry, angle
-        self.room = RELIEF + (np.zeros((angle.size, 1)) if room is None else room[:, None])
         self.heights = _Heights(geometry) if leans else None
-        # What scales and bounds a position is its own drive's: no answer depends on the others in the batch.
-        self.lever = np.ones((angle.size, RIGID + 2 * leans))
-        self.lever[:, [DISC_ROTATION, WHEEL_ANGLE]] = np.reshape(_reach(geometry), (-1, 1))
-        self.lever[:, DISC_ROTATION + 1 : WHEEL_ANGLE] = geometry.half_width
-        smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
-        self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
-        self.pitch, self.size = np.pi / place.reduction_ratio, RIGID + 2 * leans
         self.parameter = geometry.flank(angle, np.zeros((angle.size, RIGID))).parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Exact gaps of all pairs with the room, mm, their derivatives by scaled coordinates, and the number of arcs, which
-        come first.
-        """
-        gap, slope, arcs = self.gaps_of(rows, pose)
-        return gap + self.room[rows], slope / self.lever[rows, None], arcs
-
-    def gaps_of(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
         """Exact gaps of all pairs of the disc, mm, their derivatives by the pose, and the number of arcs."""
         geometry, angle = take_rows(self.geometry, rows), self.angle[rows]
         rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
@@ -389,6 +349,144 @@ class _Programme:
             gaps, slopes = self.heights.along(geometry, gaps, slopes, tilts)
         arcs = sum(each.shape[1] for each in gaps) - flank.approach.shape[1] * (2 if self.heights else 1)
         return np.concatenate(gaps, axis=1), np.concatenate(slopes, axis=1), arcs
+
+
+class _Heights:
+    """Heights at which pairs may touch: both ends, and where one that is crowned or relieved is pressed furthest at its tilt.
+
+    What rollers, pins and flanks fall short by is convex: of a straight line the ends are the first.
+    """
+
+    def __init__(self, geometry: ContactGeometry) -> None:
+        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
+        self.ends, self.bent = zip(*map(_shape, drops), strict=True)
+
+    def along(
+        self,
+        geometry: ContactGeometry,
+        gaps: Sequence[FloatArray],
+        slopes: Sequence[FloatArray],
+        tilts: Sequence[PairTilt],
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Return gaps and their derivatives by the pose of rollers, shaft pins and wheel pins at these heights: all that are
+        convex and those of bent flanks, of which tangents are kept as well, before the ends of the flanks.
+        """
+        halves = geometry.roller_half_length, geometry.half_width, geometry.half_width
+        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
+        size = (gaps[0].shape[0], ACROSS.size)
+        ends, bent = list[list[_Gap]](), list[_Gap]()
+        for places, bends, half, drop, *pairs in zip(
+            self.ends, self.bent, halves, drops, gaps, slopes, tilts, strict=True
+        ):
+            gap, slope, tilt = pairs
+            z, short = np.broadcast_to(half * ACROSS, size), np.broadcast_to(drop, size)
+            ends.append([tilt.at(gap, slope, z[:, [place]], short[:, [place]]) for place in places])
+            if bends:
+                bent.append(tilt.at(gap, slope, *tilt.deepest(z, short)))
+        found = [*ends[0], *ends[1], *bent, *ends[2]]
+        return [gap for gap, _ in found], [slope for _, slope in found]
+
+
+def _shape(drop: FloatArray) -> tuple[Rows, bool]:
+    """The outermost places of a line that falls short so far, mm, and whether it bends, in any row."""
+    known = np.flatnonzero(np.isfinite(np.atleast_2d(drop)).all(axis=0))
+    inner = np.atleast_2d(drop)[:, known]
+    return known[[0, -1]], bool(np.any(inner[:, :-2] + inner[:, 2:] - 2.0 * inner[:, 1:-1] > STRAIGHT))
+
+
+class _Programme:
+    """The gaps of discs at a batch of positions, with wheel and cranks free within circles in their bearings, and the farthest
+    wheel angle that they allow.
+
+    Its poses are x, y, rotation and lean, if they lean, of disc after disc, the displacements in each bearing that is loose
+    anywhere, crank after crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
+    """
+
+    def __init__(self, discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray | float = 0.0) -> None:
+        first, self.angle = discs[0], angle
+        self.room = RELIEF + np.broadcast_to(room, angle.shape)[:, None]
+        # Journals of a crank that stands askew in its clearances lean where there are others beside them.
+        askew = any(disc.stands_askew for disc in discs) or (len(discs) > 1 and bool(np.any(first.crank_gaps)))
+        self.leans = askew and first.coordinates.leans
+        cranks = first.coordinates.cranks if np.any(first.crank_gaps) else 0
+        wheel = first.coordinates.wheel and bool(np.any(first.wheel_gap))
+        self.discs = tuple(_Disc(disc, angle, leans=self.leans) for disc in discs)
+        self.own = DISC_ROTATION + 1 + 2 * self.leans
+        """Number of coordinates of each disc."""
+        gaps = np.broadcast_to(first.crank_gaps, (angle.size, 2))
+        radii = [np.tile(gaps, (1, cranks))] + wheel * [np.broadcast_to(first.wheel_gap, (angle.size, 1))]
+        self.radii = np.concatenate(radii, axis=1)
+        """Of the circles, mm, shape (positions, circles)."""
+        self.circles = self.own * len(discs)
+        """First coordinate of the circles."""
+        self.size = self.circles + 2 * self.radii.shape[1] + 1
+        # Displacements in a bearing are counted by the radius of its circle; a circle of none moves nothing.
+        self.scale = np.where(self.radii > 0.0, self.radii, CIRCLE)
+        # What scales and bounds a position is its own drive's: no answer depends on the others in the batch.
+        self.lever = np.ones((angle.size, self.size))
+        self.lever[:, np.r_[DISC_ROTATION : self.circles : self.own, -1]] = np.reshape(_reach(first), (-1, 1))
+        for number, disc in enumerate(discs):
+            self.lever[:, self.own * number + DISC_ROTATION + 1 : self.own * (number + 1)] = disc.half_width
+        place = first.placement
+        smallest = np.minimum(place.wheel_pin_radii.min(axis=-1), place.eccentricity.min(axis=-1))
+        self.bound = np.broadcast_to(MAX_STEP * smallest, angle.shape)
+        self.pitch = np.pi / place.reduction_ratio
+        self.maps = [self._map(disc, number, cranks, wheel) for number, disc in enumerate(discs)]
+
+    def _map(self, disc: ContactGeometry, number: int, cranks: int, wheel: bool) -> FloatArray:
+        """Pose of one disc, with cranks and wheel, by the joined pose, shape (positions, coordinates, joined)."""
+        coordinates, positions = replace(disc.coordinates, discs=1), self.angle.size
+        found = np.zeros((positions, coordinates.size, self.size))
+        each = np.r_[: DISC_ROTATION + 1, np.arange(coordinates.size)[coordinates.lean_place] if self.leans else []]
+        found[:, each.astype(np.intp), self.own * number + np.arange(self.own)] = 1.0
+        shares, slopes = (np.broadcast_to(values, (positions, 2)) for values in (disc.crank_shares, disc.crank_slopes))
+        part = self.radii / self.scale
+        for crank in range(cranks):
+            for bearing in (0, 1):
+                circle = 2 * crank + bearing
+                for axis in (0, 1):
+                    x, own = coordinates.crank(crank) + axis, self.circles + 2 * circle + axis
+                    found[:, x, own] = shares[:, bearing] * part[:, circle]
+                    if self.leans:
+                        found[:, coordinates.crank_lean(crank) + axis, own] = slopes[:, bearing] * part[:, circle]
+        if wheel:
+            for axis in (0, 1):
+                found[:, coordinates.wheel_place.start + axis, self.size - 3 + axis] = part[:, -1]
+        found[:, -1, -1] = 1.0
+        return found
+
+    def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
+        """Exact gaps of all discs and of the circles with the room, mm, their derivatives by scaled coordinates, and the number
+        of arcs, which come first; then flanks and a polygon about each circle.
+        """
+        arcs_gap, arcs_slope, gap, slope = [], [], [], []
+        lever = self.lever[rows, None]
+        for disc, each in zip(self.discs, self.maps, strict=True):
+            own = each[rows]
+            found, slopes, arcs = disc.gaps(rows, np.matmul(own, pose[..., None])[..., 0])
+            slopes = np.matmul(slopes, own) / lever
+            arcs_gap.append(found[:, :arcs])
+            arcs_slope.append(slopes[:, :arcs])
+            gap.append(found[:, arcs:])
+            slope.append(slopes[:, arcs:])
+        place = pose[:, self.circles : -1].reshape(rows.size, -1, 2)
+        distance, scale = np.hypot(place[..., 0], place[..., 1]), self.scale[rows]
+        count = distance.shape[1]
+        arcs_gap.append(scale - distance)
+        ahead = place / np.where(distance > 0.0, distance, 1.0)[..., None]
+        circle = np.zeros((rows.size, count, self.size))
+        corner = np.zeros((rows.size, count, SIDES, self.size))
+        around = 2.0 * np.pi * np.arange(SIDES) / SIDES
+        sides = np.stack((np.cos(around), np.sin(around)), axis=-1)
+        for number in range(count):
+            both = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
+            circle[:, number, both], corner[:, number, :, both] = -ahead[:, number], -sides
+        arcs_slope.append(circle)
+        gap.append((scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1))
+        slope.append(corner.reshape(rows.size, -1, self.size))
+        arcs = sum(each.shape[1] for each in arcs_gap)
+        joined = np.concatenate([*arcs_gap, *gap], axis=1) + self.room[rows]
+        return joined, np.concatenate([*arcs_slope, *slope], axis=1), arcs
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
@@ -450,137 +548,6 @@ class _Programme:
             f"{left[going[0]]:.3g} mm; steps in mm",
             history,
         )
-
-
-class _Heights:
-    """Heights at which pairs may touch: both ends, and where one that is crowned or relieved is pressed furthest at its tilt.
-
-    What rollers, pins and flanks fall short by is convex: of a straight line the ends are the first.
-    """
-
-    def __init__(self, geometry: ContactGeometry) -> None:
-        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
-        self.ends, self.bent = zip(*map(_shape, drops), strict=True)
-
-    def along(
-        self,
-        geometry: ContactGeometry,
-        gaps: Sequence[FloatArray],
-        slopes: Sequence[FloatArray],
-        tilts: Sequence[PairTilt],
-    ) -> tuple[list[FloatArray], list[FloatArray]]:
-        """Return gaps and their derivatives by the pose of rollers, shaft pins and wheel pins at these heights: all that are
-        convex and those of bent flanks, of which tangents are kept as well, before the ends of the flanks.
-        """
-        halves = geometry.roller_half_length, geometry.half_width, geometry.half_width
-        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
-        size = (gaps[0].shape[0], ACROSS.size)
-        ends, bent = list[list[_Gap]](), list[_Gap]()
-        for places, bends, half, drop, *pairs in zip(
-            self.ends, self.bent, halves, drops, gaps, slopes, tilts, strict=True
-        ):
-            gap, slope, tilt = pairs
-            z, short = np.broadcast_to(half * ACROSS, size), np.broadcast_to(drop, size)
-            ends.append([tilt.at(gap, slope, z[:, [place]], short[:, [place]]) for place in places])
-            if bends:
-                bent.append(tilt.at(gap, slope, *tilt.deepest(z, short)))
-        found = [*ends[0], *ends[1], *bent, *ends[2]]
-        return [gap for gap, _ in found], [slope for _, slope in found]
-
-
-def _shape(drop: FloatArray) -> tuple[Rows, bool]:
-    """The outermost places of a line that falls short so far, mm, and whether it bends, in any row."""
-    known = np.flatnonzero(np.isfinite(np.atleast_2d(drop)).all(axis=0))
-    inner = np.atleast_2d(drop)[:, known]
-    return known[[0, -1]], bool(np.any(inner[:, :-2] + inner[:, 2:] - 2.0 * inner[:, 1:-1] > STRAIGHT))
-
-
-class _JoinedProgramme(_Programme):
-    """The gaps of all discs, with wheel and cranks free within circles in their bearings.
-
-    Its poses are x, y, rotation and lean, if they lean, of disc after disc, the displacements in each bearing that is loose
-    anywhere, crank after crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
-    """
-
-    def __init__(self, discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray) -> None:
-        super().__init__(discs[0], angle, room)
-        first = discs[0]
-        # Journals of a crank that stands askew in its clearances lean where there are others beside them.
-        askew = any(disc.stands_askew for disc in discs) or (len(discs) > 1 and bool(np.any(first.crank_gaps)))
-        self.leans = askew and first.coordinates.leans
-        self.discs = tuple(_Programme(disc, angle, room, leans=self.leans) for disc in discs)
-        self.own = DISC_ROTATION + 1 + 2 * self.leans
-        """Number of coordinates of each disc."""
-        cranks = first.coordinates.cranks if np.any(first.crank_gaps) else 0
-        wheel = bool(np.any(first.wheel_gap))
-        gaps = np.broadcast_to(first.crank_gaps, (angle.size, 2))
-        radii = [np.tile(gaps, (1, cranks))] + wheel * [np.broadcast_to(first.wheel_gap, (angle.size, 1))]
-        self.radii = np.concatenate(radii, axis=1)
-        """Of the circles, mm, shape (positions, circles)."""
-        self.circles = self.own * len(discs)
-        """First coordinate of the circles."""
-        self.size = self.circles + 2 * self.radii.shape[1] + 1
-        # Displacements in a bearing are counted by the radius of its circle; a circle of none moves nothing.
-        self.scale = np.where(self.radii > 0.0, self.radii, CIRCLE)
-        reach = self.lever[:, WHEEL_ANGLE]
-        self.lever = np.ones((angle.size, self.size))
-        self.lever[:, np.r_[DISC_ROTATION : self.circles : self.own, -1]] = reach[:, None]
-        for number, disc in enumerate(discs):
-            self.lever[:, self.own * number + DISC_ROTATION + 1 : self.own * (number + 1)] = disc.half_width
-        self.maps = [self._map(disc, number, cranks, wheel) for number, disc in enumerate(discs)]
-
-    def _map(self, disc: ContactGeometry, number: int, cranks: int, wheel: bool) -> FloatArray:
-        """Pose of one disc, with cranks and wheel, by the joined pose, shape (positions, coordinates, joined)."""
-        coordinates, positions = replace(disc.coordinates, discs=1), self.angle.size
-        found = np.zeros((positions, coordinates.size, self.size))
-        each = np.r_[: DISC_ROTATION + 1, np.arange(coordinates.size)[coordinates.lean_place] if self.leans else []]
-        found[:, each.astype(np.intp), self.own * number + np.arange(self.own)] = 1.0
-        shares, slopes = (np.broadcast_to(values, (positions, 2)) for values in (disc.crank_shares, disc.crank_slopes))
-        part = self.radii / self.scale
-        for crank in range(cranks):
-            for bearing in (0, 1):
-                circle = 2 * crank + bearing
-                for axis in (0, 1):
-                    x, own = coordinates.crank(crank) + axis, self.circles + 2 * circle + axis
-                    found[:, x, own] = shares[:, bearing] * part[:, circle]
-                    if self.leans:
-                        found[:, coordinates.crank_lean(crank) + axis, own] = slopes[:, bearing] * part[:, circle]
-        if wheel:
-            for axis in (0, 1):
-                found[:, coordinates.wheel_place.start + axis, self.size - 3 + axis] = part[:, -1]
-        found[:, -1, -1] = 1.0
-        return found
-
-    def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Gaps of all discs and of the circles: arcs first, then flanks and a polygon about each circle."""
-        arcs_gap, arcs_slope, gap, slope = [], [], [], []
-        lever = self.lever[rows, None]
-        for programme, each in zip(self.discs, self.maps, strict=True):
-            own = each[rows]
-            found, slopes, arcs = programme.gaps_of(rows, np.matmul(own, pose[..., None])[..., 0])
-            slopes = np.matmul(slopes, own) / lever
-            arcs_gap.append(found[:, :arcs])
-            arcs_slope.append(slopes[:, :arcs])
-            gap.append(found[:, arcs:])
-            slope.append(slopes[:, arcs:])
-        place = pose[:, self.circles : -1].reshape(rows.size, -1, 2)
-        distance, scale = np.hypot(place[..., 0], place[..., 1]), self.scale[rows]
-        count = distance.shape[1]
-        arcs_gap.append(scale - distance)
-        ahead = place / np.where(distance > 0.0, distance, 1.0)[..., None]
-        circle = np.zeros((rows.size, count, self.size))
-        corner = np.zeros((rows.size, count, SIDES, self.size))
-        around = 2.0 * np.pi * np.arange(SIDES) / SIDES
-        sides = np.stack((np.cos(around), np.sin(around)), axis=-1)
-        for number in range(count):
-            both = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
-            circle[:, number, both], corner[:, number, :, both] = -ahead[:, number], -sides
-        arcs_slope.append(circle)
-        gap.append((scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1))
-        slope.append(corner.reshape(rows.size, -1, self.size))
-        arcs = sum(each.shape[1] for each in arcs_gap)
-        joined = np.concatenate([*arcs_gap, *gap], axis=1) + self.room[rows]
-        return joined, np.concatenate([*arcs_slope, *slope], axis=1), arcs
 
 
 def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: Rows) -> FloatArray:

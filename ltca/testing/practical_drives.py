@@ -29,7 +29,7 @@ from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play, largest_overlap, rigid_poses
+from ltca.geometry.play import free_play, rigid_poses
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.ring_statics import ring_by_statics
@@ -435,9 +435,9 @@ def compare(drive: Drive, crank_angle: FloatArray) -> list[Comparison]:
                 if not known
                 else np.max(
                     [
-                        largest_overlap(
+                        pair_approaches(
                             disc, np.full(2, angle), loaded.pose[:, np.append(np.arange(3) + own * number, -1)]
-                        )
+                        )[0]
                         for number, disc in enumerate(discs)
                     ]
                 )

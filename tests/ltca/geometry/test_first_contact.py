@@ -149,6 +149,7 @@ def test_nothing_touches_when_no_pin_can(paper_cases):
             geometry.placement,
             wheel_pin_centres=geometry.placement.wheel_pin_centres[:1],
             wheel_pin_radii=geometry.placement.wheel_pin_radii[:1] - 10.0,
+            wheel_pin_plays=geometry.placement.wheel_pin_plays[:1],
         ),
     )
     with pytest.raises(ConvergenceError, match="no pin touches"):
