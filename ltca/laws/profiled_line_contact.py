@@ -250,7 +250,7 @@ class ProfiledLineContactLaw(ContactLaw):
         t = inside - piece
         total = [np.zeros_like(t) for _ in range(3)]
         several = table.log_radii.size > 1
-        weights = _lagrange_weights(table.log_radii, np.log(radius)) if several else [np.ones(1)]
+        weights = _lagrange_weights(table.log_radii, np.log(radius)) if several else [np.ones(())]
         for weight, rows in zip(weights, pieces, strict=True):
             for sums, part in zip(total, quintic(rows.take(piece, axis=1), t), strict=True):
                 sums += weight * part
