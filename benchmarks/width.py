@@ -14,9 +14,13 @@ the length of a slice: the slope of the changes up to 33 slices, on logarithmic 
 from __future__ import annotations
 
 import argparse
+import sys
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
+
+sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation

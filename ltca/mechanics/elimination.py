@@ -4,7 +4,7 @@ of rollers.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,6 @@ from ltca.arrays import FloatArray
 from ltca.mechanics.displaced_pins import PinBlocks, PinMembers, solved
 from ltca.mechanics.places import Indices, by_rows
 from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gradient_with_crank, turn_with_cages
-
-if TYPE_CHECKING:
-    from ltca.mechanics.contacts import Linearised
 
 ROUGHLY_SETTLED = 0.02
 """Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
@@ -39,7 +36,7 @@ class Eliminated(NamedTuple):
     aside: FloatArray | None
 
 
-def eliminate_rollers(at: Linearised) -> None:
+def eliminate_rollers(at: Any) -> None:
     """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
 
     With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
@@ -103,7 +100,7 @@ def eliminate_rollers(at: Linearised) -> None:
     at.moved = np.abs(at.dx[..., 0]).max(axis=1, initial=0.0)
 
 
-def eliminate_by_disc(at: Linearised) -> None:
+def eliminate_by_disc(at: Any) -> None:
     """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
@@ -166,7 +163,7 @@ def eliminate_by_disc(at: Linearised) -> None:
     at.force, at.tangent = force, tangent
 
 
-def _on_displaced_pins(at: Linearised) -> tuple[FloatArray, ...]:
+def _on_displaced_pins(at: Any) -> tuple[FloatArray, ...]:
     """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
     pins, shifts = at.system.model.pins, at.shifts
     assert pins is not None
@@ -198,7 +195,7 @@ def _on_displaced_pins(at: Linearised) -> tuple[FloatArray, ...]:
     return found
 
 
-def eliminate_coupled(at: Linearised) -> None:
+def eliminate_coupled(at: Any) -> None:
     """The same where bodies deform under the loads of all contacts, and beams and a ring with them."""
     _find_bodies(at)
     part = assembled(at)
@@ -227,7 +224,7 @@ def eliminate_coupled(at: Linearised) -> None:
     at.force, at.tangent, at.dx, at.dx_by_pose, at.de, at.de_by_pose, at.aside = found
 
 
-def _eliminate(at: Linearised, part: Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> Eliminated:
+def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> Eliminated:
     """The same where loads deform more than their own contacts: force and tangent of the pose.
 
     Without `turning` loads that turn with displaced pins count where they hold these back alone.
@@ -320,13 +317,13 @@ def _eliminate(at: Linearised, part: Pressing, whole: FloatArray, left: FloatArr
     )
 
 
-def _is_near(at: Linearised, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
+def _is_near(at: Any, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
     """Positions where corrections of deformations are so small that loads follow them linearly."""
     moved = np.max(np.where(stiffness[0] > 0.0, np.abs(de).sum(axis=1), 0.0), axis=1, initial=0.0)
     return at._are_small(moved, ROUGHLY_SETTLED)
 
 
-def _bounded(at: Linearised, dx: FloatArray) -> FloatArray:
+def _bounded(at: Any, dx: FloatArray) -> FloatArray:
     """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
     than the slopes know of.
     """
@@ -339,7 +336,7 @@ def _bounded(at: Linearised, dx: FloatArray) -> FloatArray:
     return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
 
-def _flexibility(at: Linearised, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _flexibility(at: Any, load: FloatArray) -> tuple[FloatArray, FloatArray]:
     """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
     deformations, r.
     """
@@ -368,7 +365,7 @@ def _flexibility(at: Linearised, load: FloatArray) -> tuple[FloatArray, FloatArr
     return whole, left
 
 
-def _find_bodies(at: Linearised) -> None:
+def _find_bodies(at: Any) -> None:
     """Find what bodies yield between the chosen contacts: what was found before, where neither places nor choice changed."""
     before = at.before
     if before is not None and all(
@@ -386,7 +383,7 @@ def _find_bodies(at: Linearised) -> None:
     ]
 
 
-def _positions(at: Linearised, number: int) -> Indices:
+def _positions(at: Any, number: int) -> Indices:
     """Where the contacts of a kind stand among the chosen."""
     return np.concatenate([np.arange(own[number].start, own[number].stop) for own in at.at])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,9 +11,6 @@ from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import dot
 from ltca.mechanics.displaced_pins import solved
 from ltca.mechanics.places import DiscPlaces
-
-if TYPE_CHECKING:
-    from ltca.mechanics.contacts import Linearised
 
 
 class Pressing(NamedTuple):
@@ -53,7 +50,7 @@ class Pressing(NamedTuple):
     tangent: FloatArray
 
 
-def pressing_of(at: Linearised, disc: int) -> Pressing:
+def pressing_of(at: Any, disc: int) -> Pressing:
     """What the chosen contacts of a disc press its own coordinates with, rollers where they stand (Eq. 66, 70–72)."""
     places, some, (_, bores, _, races) = at.discs[disc], at.chosen[disc], at.local[disc]
     own = slice(at.at[disc][0].start, at.at[disc][3].stop)
@@ -96,7 +93,7 @@ def pressing_of(at: Linearised, disc: int) -> Pressing:
     return found
 
 
-def _gradients(at: Linearised, disc: int) -> tuple[FloatArray, FloatArray]:
+def _gradients(at: Any, disc: int) -> tuple[FloatArray, FloatArray]:
     """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
     how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
     """
@@ -136,12 +133,12 @@ def _gradients(at: Linearised, disc: int) -> tuple[FloatArray, FloatArray]:
     return g, turned.imag
 
 
-def gradient_with_crank(at: Linearised, places: DiscPlaces, gradient: FloatArray) -> FloatArray:
+def gradient_with_crank(at: Any, places: DiscPlaces, gradient: FloatArray) -> FloatArray:
     """Derivatives of pins by the pose of a disc, and by the crank angle where that is a coordinate."""
     return np.concatenate((gradient, np.matmul(gradient, places.nominal)), axis=-1) if at.by_crank else gradient
 
 
-def bores_moved(at: Linearised, places: DiscPlaces) -> FloatArray:
+def bores_moved(at: Any, places: DiscPlaces) -> FloatArray:
     """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
     (positions, cranks, 2, coordinates).
     """
@@ -153,7 +150,7 @@ def bores_moved(at: Linearised, places: DiscPlaces) -> FloatArray:
     return found
 
 
-def _rub(at: Linearised, disc: int, g: FloatArray) -> FloatArray:
+def _rub(at: Any, disc: int, g: FloatArray) -> FloatArray:
     """What loads press the coordinates of a disc with, G and friction along the tangents of pins and holes."""
     friction = at.system.model.friction
     if friction is None:
@@ -191,7 +188,7 @@ def _rub(at: Linearised, disc: int, g: FloatArray) -> FloatArray:
     return found
 
 
-def _through_bodies(at: Linearised, disc: int, stiffness: FloatArray) -> FloatArray:
+def _through_bodies(at: Any, disc: int, stiffness: FloatArray) -> FloatArray:
     """Stiffnesses of wheel pins and shaft pins, shape (positions, pairs), with what the bodies yield there: diagonal of
     K (1 + C K)⁻¹ of the chosen contacts.
     """
@@ -208,7 +205,7 @@ def _through_bodies(at: Linearised, disc: int, stiffness: FloatArray) -> FloatAr
     return found
 
 
-def bends(at: Linearised, disc: int) -> FloatArray:
+def bends(at: Any, disc: int) -> FloatArray:
     """Σ F ∂²d/∂q² of the contacts of a disc by its own coordinates but what the rollers' places turn."""
     system, places = at.system, at.discs[disc]
     pins, bores, holes, _ = system.of_kind[disc]
@@ -224,7 +221,7 @@ def bends(at: Linearised, disc: int) -> FloatArray:
     return np.asarray(found)
 
 
-def assembled(at: Linearised) -> Pressing:
+def assembled(at: Any) -> Pressing:
     """What contacts of all discs press all coordinates with."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     if system.discs == 1:

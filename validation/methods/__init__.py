@@ -3,6 +3,7 @@
 Modules in the order data passes:
 
 ==============  ============================================================
+grid_pressures  Pressures along the width from half-space grids of contacts that tilt
 pressed_grid    Contacts on half-space grids at every approach of an equilibrium: load, stiffness, pressures
 grids           Contact grids solved inside every iteration of the equilibrium: the contacts of the ``direct`` method
 unloaded        Unloaded transmission error, and pairs that can carry (Eq. 2–6)

@@ -247,7 +247,7 @@ def test_a_second_run_beside_the_first(paper_run, tmp_path):
     assert content["compared"]["match"] == [1]
     assert np.array_equal(numbers["b/1/full/outer/load"], numbers["0/full/outer/load"])
     assert "second run, CS-6" in text
-    assert "0.00 %" in text
+    assert "0.00\u00a0%" in text
 
 
 def test_inputs_are_those_of_parts_that_are_there():
