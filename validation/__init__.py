@@ -15,3 +15,4 @@ report          The page and files of a validation
 manual          The verification manual: cases with reference, error bar and verdict
 commands        ``cyclo validate``
 ==============  ============================================================
+"""
