@@ -647,11 +647,11 @@ class Linearised:
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
-        return self._are_small(
+        return self.are_small(
             self.moved, ROUGHLY_SETTLED if roughly else SETTLED_IN_MOTION if self.by_crank else SETTLED
         )
 
-    def _are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
+    def are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
         deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
         return np.asarray(moved <= part * deep + ROUND_OFF)

@@ -320,7 +320,8 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
 def _is_near(at: Any, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_]:
     """Positions where corrections of deformations are so small that loads follow them linearly."""
     moved = np.max(np.where(stiffness[0] > 0.0, np.abs(de).sum(axis=1), 0.0), axis=1, initial=0.0)
-    return at._are_small(moved, ROUGHLY_SETTLED)
+    near: NDArray[np.bool_] = at.are_small(moved, ROUGHLY_SETTLED)
+    return near
 
 
 def _bounded(at: Any, dx: FloatArray) -> FloatArray:

@@ -225,7 +225,8 @@ def assembled(at: Any) -> Pressing:
     """What contacts of all discs press all coordinates with."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     if system.discs == 1:
-        return at.pressing[0]
+        alone: Pressing = at.pressing[0]
+        return alone
     components, rollers = system.components, at.of_rollers[-1].stop
     g, force_map = np.zeros((2, rows, components, at.count, size))
     placed, force = np.zeros((rows, rollers, components, size)), np.zeros((rows, size))
