@@ -171,15 +171,6 @@ def _on_displaced_pins(at: Any) -> tuple[FloatArray, ...]:
     members = at.members = PinMembers(at)
     left = at.deformation - at.overlap
     left += members.approaches(members.unsettled(shifts))
-    at.off_by = left
-    wanted = np.abs(left).sum(axis=1)
-    matters = (at.stiffness[0] > 0.0) | (at.deformation[:, 0] - left[:, 0] > 0.0)
-    at.off = np.max(wanted * matters, axis=1, initial=0.0)
-    for disc, part in enumerate(at.pressing):
-        _, bores, _, races = at.local[disc]
-        stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
-        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
-        at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
     blocks, moves = PinBlocks(members), not at.held
     found = blocks.eliminated(at.pressing, left, turning=moves)
     if moves:
@@ -191,8 +182,25 @@ def _on_displaced_pins(at: Any) -> tuple[FloatArray, ...]:
         if not near.all():
             # Far off loads may turn with soft pins more than these hold against.
             still = blocks.eliminated(at.pressing, left, turning=False)
-            return tuple(by_rows(near, *each) for each in zip(found, still, strict=True))
+            found = tuple(by_rows(near, *each) for each in zip(found, still, strict=True))
+    left = left + _moved_aside(at, found[4])
+    at.off_by = left
+    wanted = np.abs(left).sum(axis=1)
+    matters = (at.stiffness[0] > 0.0) | (at.deformation[:, 0] - left[:, 0] > 0.0)
+    at.off = np.max(wanted * matters, axis=1, initial=0.0)
+    for disc, part in enumerate(at.pressing):
+        _, bores, _, races = at.local[disc]
+        stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
+        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+        at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
     return found
+
+
+def _moved_aside(at: Any, aside: FloatArray) -> FloatArray:
+    """What loads that turn with displaced pins press these aside takes of the deformations of the chosen contacts."""
+    force = at.members.forces(np.zeros(at.load.shape), aside[..., -1], changes=True)
+    moved: FloatArray = at.members.approaches(at.system.model.pins.under(force))
+    return moved
 
 
 def eliminate_coupled(at: Any) -> None:
@@ -201,6 +209,14 @@ def eliminate_coupled(at: Any) -> None:
     part = assembled(at)
     stiffness, bores, races = at.chosen_stiffness, _positions(at, 1), _positions(at, 3)
     whole, left = _flexibility(at, part.load)
+    moves = at.shifts is not None and not at.held
+    found = _eliminate(at, part, whole, left, turning=moves)
+    if moves and not (close := _is_near(at, found.de, stiffness)).all():
+        # Far off loads may turn with soft pins more than these hold against.
+        still = _eliminate(at, part, whole, left, turning=False)
+        found = Eliminated(*(by_rows(close, *each) for each in zip(found, still, strict=True)))
+    if found.aside is not None:
+        left = left + _moved_aside(at, found.aside)
     at.off_by = at.of_all(left)
     wanted = np.abs(left).sum(axis=1)
     expected = at.of_chosen(at.deformation)[:, 0] - left[:, 0]
@@ -215,12 +231,6 @@ def eliminate_coupled(at: Any) -> None:
     at.off = np.max(wanted * matters, axis=1, initial=0.0)
     apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
     at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
-    moves = at.shifts is not None and not at.held
-    found = _eliminate(at, part, whole, left, turning=moves)
-    if moves and not (close := _is_near(at, found.de, stiffness)).all():
-        # Far off loads may turn with soft pins more than these hold against.
-        still = _eliminate(at, part, whole, left, turning=False)
-        found = Eliminated(*(by_rows(close, *each) for each in zip(found, still, strict=True)))
     at.force, at.tangent, at.dx, at.dx_by_pose, at.de, at.de_by_pose, at.aside = found
 
 
