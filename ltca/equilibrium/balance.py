@@ -18,7 +18,7 @@ from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
 from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between
-from ltca.equilibrium.newton import Search
+from ltca.equilibrium.newton import Holding, Search
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
@@ -35,6 +35,8 @@ TORQUE_RATIO = 8.0
 MAX_TORQUE_STEPS = 7
 """Most increases of the torque by `TORQUE_RATIO` in search of a start that balances."""
 LEAST_TORQUE_RATIO = 1.05
+COARSER = 4
+"""Leading positions for one that leads these, of several cranks."""
 FEW_ITERATIONS = 3
 """Iterations that a nearby start takes at most."""
 
@@ -119,6 +121,7 @@ def solve_equilibrium(
     inner: Start | None = None,
     series: int = 1,
     reference: FloatArray | float = 0.0,
+    holding: Holding | None = None,
 ) -> Equilibrium:
     """Find the pose in which every position of a batch balances.
 
@@ -139,6 +142,8 @@ def solve_equilibrium(
     reference : float or array, shape (positions,)
         Moment that the residual is measured by where the one on the wheel is smaller, N·mm: parts that hold each other carry
         loads without any.
+    holding : Holding, optional
+        Which moments on the wheel to balance instead, by what contacts have come to; `wheel_moment` is where they start.
 
     Returns
     -------
@@ -153,6 +158,8 @@ def solve_equilibrium(
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
     search = _search(model, angle, moment, np.zeros((angle.size, model.coordinates.size)), reference)
+    if holding is not None:
+        search.moment, search.holding = moment.copy(), holding
     left = np.zeros(0, dtype=np.intp)
     for rows, begin in _stages(search, start, inner, series):
         left = np.append(left, search.iterate(_most(search), rows, begin))
@@ -234,15 +241,15 @@ def _stages(
     if search.balanced:
         led[search.contacts()[0] // count] = True
     beside, alone = rest[led[rest // count]], rest[~led[rest // count]]
-    # Seen from one of several cranks positions do differ: some beside the leader, and the others from between them.
-    apart = np.zeros(beside.size, dtype=bool)
-    if series == 1 and model.discs[0].geometry.placement.cranks > 1:
-        apart = ~np.isin(beside, leading)
-    if beside.size:
-        first = beside[~apart]
-        yield first, _place(search, first, (np.cumsum(led) - 1)[first // count])
-    if apart.any():
-        yield beside[apart], _place(search, beside[apart])
+    # Seen from one of several cranks positions do differ: few beside the leader, and the others from between those before.
+    levels = [beside]
+    if series == 1 and _is_costly(model):
+        some = np.isin(beside, leading)
+        few = np.isin(beside, leading[::COARSER])
+        levels = [beside[few], beside[some & ~few], beside[~some]]
+    for number, level in enumerate(levels):
+        if level.size:
+            yield level, _place(search, level, (np.cumsum(led) - 1)[level // count] if number == 0 else None)
     if alone.size:
         pose[alone] = _at_first_contact(model.take(alone), angle[alone], moment[alone])
         yield alone, None
@@ -255,7 +262,7 @@ def _place(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp] | N
     model, wanted = search.model, search.angle[rows]
     known, contacts = search.contacts()
     angle = search.angle[known]
-    way = between(angle, wanted) if leaders is None else (leaders, leaders, np.zeros(rows.size))
+    way = between(angle, wanted) if leaders is None else (leaders[:, None], np.ones((rows.size, 1)))
     search.pose[rows] = pose_between(angle, search.pose[known], wanted, model.coordinates, way)
     ratio = model.discs[0].geometry.placement.reduction_ratio
     return start_between(angle, Start.after(contacts), wanted, ratio, way)
@@ -279,6 +286,12 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
     model = search.model.take(rows)
     moment, load = factor * search.moment[rows], factor * search.load[rows]
     return Search(model, search.angle[rows], moment, search.levers(rows), load, pose.copy())
+
+
+def _is_costly(model: Reducer) -> bool:
+    """Whether evaluations of a few positions take longer than what they save of many."""
+    several = len(model.discs) * model.discs[0].geometry.placement.cranks > 1
+    return several or model.pins is not None or bool(model.coordinates.leans) or not model.symmetric
 
 
 def _is_loose(model: Reducer) -> bool:

@@ -236,11 +236,7 @@ class StageMesh:
         (positions, 2, cranks); zero where the carrier is held.
         """
         sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
-        plane, arm, slope = (
-            np.asarray(self.plane)[..., None],
-            self.sun_radius * self.outward,
-            self._slope(np.sign(moments))[0],
-        )
+        plane, arm, slope = self.plane, self.sun_radius * self.outward, self._slope(np.sign(moments))[0]
         found = forces.in_plane, plane * forces.in_plane - arm * forces.axial
         by_moments = slope, plane * slope + arm * self.axial / self.pitch_radius
         return sign * np.stack(found, axis=1).sum(axis=2), sign * np.stack(by_moments, axis=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -17,8 +18,12 @@ RESOLVED = 4
 WORTH = 2
 """Positions for one leading, below which each might as well lead."""
 MOST = 8
-Way: TypeAlias = tuple[NDArray[np.intp], NDArray[np.intp], FloatArray]
-"""Known positions before and after wanted ones, and the part of the way between them."""
+AROUND = 4
+"""Known positions that a place between them follows, by Lagrange's polynomial; the two beside it where spacings differ."""
+UNEVEN = 2.0
+"""Ratio of spacings from which they differ."""
+Way: TypeAlias = tuple[NDArray[np.intp], FloatArray]
+"""Known positions around wanted ones and their weights, shape (wanted, positions around)."""
 
 
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
@@ -40,21 +45,43 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
 
 
 def between(angle: FloatArray, wanted: FloatArray) -> Way:
-    """Return the known positions before and after each wanted crank angle, rad, and the part of the way between these.
+    """Return the known positions around each wanted crank angle, rad, and the weights that interpolate between these.
 
     Known angles may stand in any order; beyond the first and the last there is nothing but these.
+
+    Examples
+    --------
+    >>> places, weights = between(np.arange(5.0), np.array([1.5]))
+    >>> places, weights
+    (array([[0, 1, 2, 3]]), array([[-0.0625,  0.5625,  0.5625, -0.0625]]))
     """
     order = np.argsort(angle, kind="stable")
+    count = min(AROUND, angle.size)
     behind = np.clip(np.searchsorted(angle[order], wanted), 1, max(angle.size - 1, 1))
-    before, after = order[behind - 1], order[min(angle.size - 1, 1) * behind]
-    span = angle[after] - angle[before]
-    return before, after, np.clip((wanted - angle[before]) / np.where(span > 0.0, span, 1.0), 0.0, 1.0)
+    first = np.clip(behind - count // 2, 0, angle.size - count)
+    around = first[:, None] + np.arange(count)
+    place, x = angle[order][around], np.clip(wanted, angle.min(), angle.max())[:, None]
+    apart = place[:, :, None] - place[:, None, :]
+    off = np.broadcast_to((x - place)[:, None, :], apart.shape).copy()
+    own = np.arange(count)
+    apart[:, own, own] = off[:, own, own] = 1.0
+    weights = np.prod(np.divide(off, apart, out=np.ones(apart.shape), where=apart != 0.0), axis=2)
+    steps = np.diff(place, axis=1)
+    uneven = steps.max(axis=1, initial=0.0) > UNEVEN * steps.min(axis=1, initial=np.inf)
+    rows = np.nonzero(uneven)[0]
+    before = (behind - 1 - first)[rows]
+    span = steps[rows, before]
+    part = np.divide((x[:, 0] - place[:, 0])[rows], span, out=np.zeros(rows.size), where=span > 0.0)
+    part -= np.divide((place[rows, before] - place[rows, 0]), span, out=np.zeros(rows.size), where=span > 0.0)
+    weights[rows] = 0.0
+    weights[rows, before], weights[rows, before + 1] = 1.0 - part, part
+    return order[around], weights
 
 
 def pose_between(
     angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates, way: Way | None = None
 ) -> FloatArray:
-    """Return poses at wanted crank angles between known ones, linearly as seen from the turning crank.
+    """Return poses at wanted crank angles between known ones, interpolated as seen from the turning crank.
 
     Known angles, rad, may stand in any order; poses have the shape (positions, coordinates). `way` is `between` by default.
 
@@ -64,30 +91,31 @@ def pose_between(
     >>> pose_between(np.array([0.0, np.pi]), known, np.array([0.5 * np.pi]), Coordinates()).round(9)
     array([[0., 1., 0., 1.]])
     """
-    before, after, _ = between(angle, wanted) if way is None else way
-    seen, span = _turned(pose, -angle, coordinates), angle[after] - angle[before]
-    slope = (seen[after] - seen[before]) / np.where(span > 0.0, span, 1.0)[:, None]
-    ahead = np.minimum(np.maximum(wanted - angle[before], 0.0), span)
-    inside = np.where((ahead < span)[:, None], seen[before] + slope * ahead[:, None], seen[after])
-    return _turned(inside, wanted, coordinates)
+    around, weights = between(angle, wanted) if way is None else way
+    seen = _turned(pose, -angle, coordinates)
+    return _turned(np.einsum("wk,wkc->wc", weights, seen[around]), wanted, coordinates)
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:
-    """Return inner unknowns between known ones: places on the flank in line as seen from the wheel, the rest from the nearer.
+    """Return inner unknowns between known ones: places on the flank as seen from the wheel and deformations interpolated, what
+    else is known from the nearest.
 
     Angles, rad, and `way` are those of `between`; a pin moves along the flank by φ_C/u, u the `ratio`.
     """
-    before, after, part = way
+    around, weights = way
 
     def at(values: FloatArray) -> FloatArray:
-        return np.asarray(values[before] + part[:, None] * (values[after] - values[before]))
+        return np.asarray(np.einsum("wk,wk...->w...", weights, values[around]))
 
+    inner = known.inner
+    if inner is not None:
+        nearest = np.take_along_axis(around, np.argmax(weights, axis=1)[:, None], axis=1)[:, 0]
+        approach, inner = inner.approach, take_positions(inner.elsewhere, nearest)
+        inner = inner if approach is None else replace(inner, approach=at(approach))
     return Start(
         parameter=at(known.parameter - angle[:, None] / ratio) + wanted[:, None] / ratio,
         share=at(known.share),
-        inner=None
-        if known.inner is None
-        else take_positions(known.inner.elsewhere, np.where(part < 0.5, before, after)),
+        inner=inner,
     )
 
 

@@ -9,6 +9,9 @@ are balanced by the size of their residual.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -35,6 +38,8 @@ MAX_REDUCTION_STEPS = 60
 RESTART_PERTURBATIONS = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
 """Relative random perturbations of the pose tried at restarts with friction: a disc that carries next to nothing may be caught
 between contacts on which friction does not let it rest, and carries nothing right beside."""
+HOLDING, HELD = 0.1, 1e-6
+"""Residuals, relative to the load, between which the moment that holds the wheel follows the contacts."""
 RIDGE = 1e-9
 """Largest negative stiffness of a mode at a minimum by the stiffest: that of round-off."""
 FIRST_VALLEY_STEP = 1e-5
@@ -43,6 +48,10 @@ LEAST_PIVOT_RATIO = 1e-6
 """Least pivot ratio accepted by the elimination: with smaller ones the modes of the tangent are computed."""
 LINE_SEARCH_SLOPE_RATIO = 0.3
 """Largest ratio of the slopes of Π at the end and at the beginning of an accepted step."""
+
+
+Holding = Callable[[NDArray[np.intp], FloatArray, FloatArray, Any], FloatArray]
+"""Moments on the wheel by numbers of positions, their poses, present moments and contacts."""
 
 
 class Search:
@@ -60,6 +69,9 @@ class Search:
         Moment by the lever of the wheel, N.
     pose : array, shape (positions, coordinates)
         Where to start; changed in place.
+    holding : Holding, optional
+        Which moments on the wheel give the output torque, of some positions by what their contacts have come to; `moment` is
+        changed in place by it.
 
     Notes
     -----
@@ -76,8 +88,10 @@ class Search:
         lever: FloatArray,
         load: FloatArray,
         pose: FloatArray,
+        holding: Holding | None = None,
     ) -> None:
-        self.model, self.angle, self.moment, self.lever, self.load = model, angle, moment, lever, load
+        self.model, self.angle, self.lever, self.load = model, angle, lever, load
+        self.moment, self.holding = moment, holding
         self.pose = pose
         self.place = model.discs[0].geometry.placement
         """The wheel's places are those of every disc."""
@@ -147,7 +161,7 @@ class Search:
         if response is None:
             response = self.evaluate(active, self.pose[active], begin, roughly=True)
         gradient, tangent = self.scaled(active, response)
-        residual = self.residual
+        residual, held = self.residual, np.zeros(self.angle.size, dtype=bool)
         residual[active] = _left_over(gradient, response)
         for _ in range(most):
             self.history.append(residual.copy())
@@ -175,6 +189,15 @@ class Search:
             step, slope = _damped_step(tangent, gradient, damping[active], bound[active], self.symmetric)
             taken, response, gradient, tangent, fraction = self.walk(active, step, slope, response.start)
             self.pose[active] = taken
+            if self.holding is not None:
+                left = _left_over(gradient, response) / self.load[active]
+                near = np.nonzero((left < HOLDING) & ~held[active])[0]
+                held[active] = left < HELD
+                if near.size:
+                    mine = active[near]
+                    here = response if near.size == active.size else take_positions(response, near)
+                    self.moment[mine] = self.holding(mine, taken[near], self.moment[mine], here)
+                    gradient[near], tangent[near] = self.scaled(mine, here)
             self.slipped[active] = np.max(np.abs(taken[:, self.rotations]), axis=1) > self.half_pitch
             residual[active] = _left_over(gradient, response)
             bound[active] *= np.where(fraction == 1.0, 2.0, np.where(fraction < 0.1, 0.5, 1.0))

@@ -26,6 +26,7 @@ from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Start
 from ltca.drive.parts import Drive
 from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
+from ltca.equilibrium.newton import Holding
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
@@ -50,8 +51,15 @@ def unbalanced_moment(
     `input_per_crank_moment` is that of the drive of each position, and `output` the torque on the output. What seals and oil take
     at the input is not in it.
     """
-    angle, pose, parts = found.crank_angle, found.pose, found.response.parts
-    left = found.wheel_moment + input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1) + output
+    pressed = _moment_of_contacts(model, found.crank_angle, found.pose, found.response.parts, input_per_crank_moment)
+    return np.asarray(found.wheel_moment + pressed + output)
+
+
+def _moment_of_contacts(
+    model: Reducer, angle: FloatArray, pose: FloatArray, parts: Any, input_per_crank_moment: FloatArray
+) -> FloatArray:
+    """What is left of the moments but those on wheel and output."""
+    left = input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1)
     if model.coordinates.wheel or model.coordinates.wheel_leans:
         for place, pressed in zip(model.wheel_places, model.beside_pins(angle, pose, parts).T, strict=True):
             x, y = pose[:, place[:1]], pose[:, place[1:]]
@@ -118,7 +126,8 @@ def solve_at_output(
         if friction is not None and strength < 1.0:
             part = replace(model, friction=friction.scaled(strength) if strength else None)
         try:
-            found = solve_equilibrium(part, angle, moment, start, inner, len(drives), wanted.reference)
+            holding = wanted.holding(part, angle)
+            found = solve_equilibrium(part, angle, moment, start, inner, len(drives), wanted.reference, holding)
             found = wanted.balanced(part, found)
         except ConvergenceError as error:
             if not (rubs and strength):
@@ -213,6 +222,18 @@ class OutputTorque:
             # What parts that hold each other carry without a torque is balanced as well as under the light one.
             reference=np.where(loads == 0.0, each(lambda drive: drive.load.light_torque), 0.0),
         )
+
+    def holding(self, model: Reducer, crank_angle: FloatArray) -> Holding | None:
+        """Return which moments hold the wheel, of some positions by what their contacts have come to; None where none is held."""
+        if not np.any(self.held):
+            return None
+
+        def moments(rows: NDArray[np.intp], pose: FloatArray, moment: FloatArray, response: Any) -> FloatArray:
+            own, ratio = model.take(rows), self.input_per_crank_moment[rows]
+            left = moment + self.signed[rows] + _moment_of_contacts(own, crank_angle[rows], pose, response.parts, ratio)
+            return np.where(self.held[rows], moment - left / self.by_wheel[rows], moment)
+
+        return moments
 
     def balanced(self, model: Reducer, found: Equilibrium, balance: Balance | None = None) -> Equilibrium:
         """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.

@@ -424,6 +424,11 @@ class Evaluation:
         return self._gathered(lambda found: found.start)
 
     @property
+    def parts(self) -> tuple[DiscResponse, ...]:
+        """Contacts of every disc."""
+        return self._gathered(lambda found: found.parts)
+
+    @property
     def kept(self) -> Response:
         """The whole response, without what a search alone asks for."""
         return self.whole.kept

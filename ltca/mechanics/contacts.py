@@ -25,9 +25,10 @@ as components.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -73,6 +74,8 @@ SETTLED = 1e-7
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
 SETTLED_IN_MOTION = 1e-5
 """The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""
+FAR_OFF = 0.2
+"""What is left of the deformations by the largest approach from which a start is compared with nothing at all."""
 MAX_CORRECTIONS = 60
 TOGETHER = 4
 """Positions that are corrected together though most of them have settled."""
@@ -186,45 +189,68 @@ class ContactSystem:
                 break
         return groups
 
-    def _begun(self, at: Linearised, begin: State) -> Linearised:
-        """Begin anew where what was expected is farther off than nothing at all."""
-        if self.deforms and not at.settled(roughly=True).all():
-            shifts = None if begin.shifts is None else begin.shifts * 0.0
-            anew = at.again(begin._replace(approach=None, shifts=shifts))
-            better = (anew.off < at.off) & ~at.settled(roughly=True)
-            if better.all():
-                return anew
-            if better.any():
-                return at.again(mixed(at.here, anew.here, better))
-        return at
-
     def _settled(
         self, at: Linearised, begin: State | None, apart: bool, history: tuple[FloatArray, ...] = ()
     ) -> list[tuple[Indices, Linearised]]:
         """Correct the inner unknowns, each position for itself, until they have settled.
 
-        `begin` is what was expected of them, None where it has been compared with nothing at all.
+        `begin` is what was expected of them, None where it has been compared with nothing at all. Few positions among many that
+        take longer, begin anew or go back on the way are corrected `apart`.
         """
+        every, others = np.arange(at.angle.size), list[tuple[Indices, Linearised]]()
+        gone = np.zeros(every.size, dtype=bool)
+
+        def leave(
+            at: Linearised, some: NDArray[np.bool_], begin: State | None, history: tuple[FloatArray, ...]
+        ) -> bool:
+            """Correct some positions by themselves where they are few."""
+            if not (apart and every.size > TOGETHER and 0 < 2 * np.count_nonzero(some) < every.size):
+                return False
+            rows = np.nonzero(some)[0]
+            system, mine = ContactSystem(self.model.take(rows)), take_positions((begin, history), rows)
+            groups = system._settled(at.of_rows(system, rows), mine[0], apart, mine[1])
+            others.extend((rows[each], group) for each, group in groups)
+            gone[rows] = True
+            return True
+
         history = (*history, at.moved)
-        while not (settled := at.settled(at.roughly)).all():
+        while not (settled := at.settled(at.roughly) | gone).all():
             if len(history) > MAX_CORRECTIONS:
                 largest = [float(np.max(moved)) for moved in history]
                 raise ConvergenceError("deformations of contacts do not settle; largest correction in mm", largest)
-            if apart and settled.size > TOGETHER and 2 * np.count_nonzero(settled) > settled.size:
-                rows = np.nonzero(~settled)[0]
-                system, mine = ContactSystem(self.model.take(rows)), take_positions((begin, history[:-1]), rows)
-                groups = system._settled(at.of_rows(system, rows), mine[0], apart, mine[1])
-                return [(np.arange(settled.size), at), *((rows[some], group) for some, group in groups)]
+            if leave(at, ~settled, begin, history[:-1]):
+                break
             if begin is not None:
+                if self.coupled and leave(at, self._far_off(at) & ~gone, begin, history[:-1]):
+                    begin = None
+                    continue
                 at, begin = self._begun(at, begin), None
                 history = (at.moved,)
                 continue
             part = np.where(settled, 0.0, 1.0)
             if len(history) > 4:  # contacts that take turns as pins move are met half way
                 part = np.where(history[-1] > 0.5 * history[-3], 0.5 * part, part)
-            at = at.corrected(part)
+            at = at.corrected(part, partial(leave, at, begin=None, history=history[:-1]))
             history = (*history, at.moved)
-        return [(np.arange(at.angle.size), at)]
+        return [(every, at), *others]
+
+    def _far_off(self, at: Linearised) -> NDArray[np.bool_]:
+        """Positions that what was expected may be farther off than nothing at all."""
+        unsettled = ~at.settled(roughly=True)
+        return unsettled & (at.off > FAR_OFF * at.deepest) if self.coupled else unsettled
+
+    def _begun(self, at: Linearised, begin: State) -> Linearised:
+        """Begin anew where what was expected is farther off than nothing at all."""
+        far = self._far_off(at)
+        if self.deforms and far.any():
+            shifts = None if begin.shifts is None else begin.shifts * 0.0
+            anew = at.again(begin._replace(approach=None, shifts=shifts))
+            better = (anew.off < at.off) & far
+            if better.all():
+                return anew
+            if better.any():
+                return at.again(mixed(at.here, anew.here, better))
+        return at
 
     def _begin(self, pose: FloatArray, start: Start | None) -> State:
         """Inner unknowns to start from; NaN where nothing is known."""
@@ -653,8 +679,12 @@ class Linearised:
 
     def are_small(self, moved: FloatArray, part: float) -> NDArray[np.bool_]:
         """Positions where corrections, mm, are a small part of the largest approach."""
-        deep = np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0)
-        return np.asarray(moved <= part * deep + ROUND_OFF)
+        return np.asarray(moved <= part * self.deepest + ROUND_OFF)
+
+    @cached_property
+    def deepest(self) -> FloatArray:
+        """Largest approach of a loaded contact, mm, shape (positions,)."""
+        return np.asarray(np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0))
 
     def again(self, state: State) -> Linearised:
         """Return the contacts at the same poses with other inner unknowns."""
@@ -752,14 +782,15 @@ class Linearised:
         load = self.load + self.of_all(self.change)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
-    def corrected(self, part: FloatArray) -> Linearised:
+    def corrected(self, part: FloatArray, leave: Callable[[NDArray[np.bool_]], bool] | None = None) -> Linearised:
         """Return the contacts at the same poses with the inner unknowns corrected of those positions whose part is not zero.
 
         Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
-        problem; then the pins are put where the loads press them, or that part of the way there.
+        problem; then the pins are put where the loads press them, or that part of the way there. `leave` takes positions
+        away that go back on the way, where they are few, and tells whether it did.
         """
         moves = part > 0.0
-        at = self._stepped(moves)
+        at = self._stepped(moves, None if self.shifts is not None else leave)
         if self.shifts is None:
             return at
         for _ in range(MAX_CORRECTIONS):
@@ -772,7 +803,9 @@ class Linearised:
             state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
         return self.again(state if moves.all() else mixed(self.here, state, moves))
 
-    def _stepped(self, moves: NDArray[np.bool_]) -> Linearised:
+    def _stepped(
+        self, moves: NDArray[np.bool_], leave: Callable[[NDArray[np.bool_]], bool] | None = None
+    ) -> Linearised:
         """The contacts with deformations of some positions a step on, or where the energy along it has nearly ceased to fall."""
         rows = self.angle.size
         fraction, low, high = moves.astype(float), np.zeros(rows), np.ones(rows)
@@ -795,7 +828,7 @@ class Linearised:
             end = found.along(self.step)
             far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
             far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
-            if not far.any():
+            if not far.any() or (leave is not None and leave(far)):
                 break
             high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
             near = (end < 0.0) & ~far & (fraction < 1.0)

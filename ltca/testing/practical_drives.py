@@ -274,6 +274,8 @@ PARTS = (1e-6, 1e-5, 1e-4)
 NANOMETRE = 1e-6
 """mm. Unit of the gaps in `light_limit`: HiGHS leaves reduced costs of 1e-7 of a cost, and in mm a pin with next to no lever
 (force 1e4 times that of the wheel) may hide a bound that is 3 % less behind that."""
+TOUCHING = 1e-6
+"""Gap that is round-off, nm."""
 BESIDE = 1.1
 """Difference of the second crank angle to that of the drive, rad."""
 
@@ -332,9 +334,11 @@ def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
     torque = np.array([0.0, 0.0, 0.0, float(sense)])
     further = []
     for gap, slope in zip(approach, scaled, strict=True):
+        cost = np.maximum(-gap, 0.0) / NANOMETRE
+        cost[cost < TOUCHING] = 0.0  # programmes with costs of round-off alone are "unbounded" to HiGHS
         # Of some programmes older versions of HiGHS say "unknown" by one method and solve them by the other.
         for method in ("highs", "highs-ds", "highs-ipm"):
-            found = linprog(np.maximum(-gap, 0.0) / NANOMETRE, A_eq=slope.T, b_eq=torque, method=method)
+            found = linprog(cost, A_eq=slope.T, b_eq=torque, method=method)
             if found.success:
                 break
         further.append(found.fun * NANOMETRE)

@@ -12,6 +12,7 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.reactions import crank_support_forces, mesh_forces
 from ltca.analysis.summary import summarise
 from ltca.analysis.torque_curve import torque_curve
+from ltca.arrays import stack_drives
 from ltca.compliance.response import bearing_pushes
 from ltca.drive.members.first_stage import FirstStage
 from ltca.drive.parts import Material
@@ -67,6 +68,17 @@ def test_forces_have_their_moment_and_push_planets_outward(answer):
     back = StageMesh.of_drive(answer.drive).forces(-answer.crank_torques)
     np.testing.assert_array_equal(back.radial, found.radial)
     np.testing.assert_array_equal(back.tangential, -found.tangential)
+
+
+def test_teeth_in_other_planes_press_the_wheels_of_drives_that_are_solved_together(geared):
+    """A check of shares stopped at arrays of different shapes where drives of one batch had teeth in planes of their own."""
+    stages = [StageMesh.of_drive(with_fields(geared, {"first_stage.plane": plane})) for plane in (-30.0, 20.0)]
+    moments = np.array([[3.0, 4.0, 5.0], [-1.0, 2.0, 6.0]]) * 1e4
+    together = stack_drives(stages, 2).on_wheel(np.tile(moments, (2, 1)))
+    alone = [stage.on_wheel(moments) for stage in stages]
+    assert np.abs(alone[0][0][:, 1] - alone[1][0][:, 1]).min() > 1e3  # N·mm
+    for mine, each in zip(together, zip(*alone, strict=True), strict=True):
+        np.testing.assert_allclose(mine, np.concatenate(each), rtol=1e-14)
 
 
 def test_sun_turns_by_what_planets_press(answer):
