@@ -515,8 +515,9 @@ class _Programme:
             )
             gain = sense[going] * step[:, WHEEL_ANGLE]
             left[going] = np.maximum(RELIEF - gap.min(axis=1), 0.0)
+            # Where gaps are shut a programme may promise much for a little overlap: that is no preload.
             found = np.where(
-                least > CLOSED,
+                np.minimum(overlap, least) > CLOSED,
                 overlap - least <= CLOSED + 1e-3 * least,
                 (overlap - least <= KEPT_GAP) & (np.abs(gain) <= LEAST_GAIN),
             )

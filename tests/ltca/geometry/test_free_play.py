@@ -222,6 +222,19 @@ def test_loads_of_a_millionth_turn_practical_drives_as_far(seed):
     assert not [one for one in found if one.outcome in ("wrong", "not balanced")], found
 
 
+def test_play_bought_with_a_little_overlap_is_no_preload():
+    """A programme that gained 5 µm for 4 pm of overlap was taken for one of parts that overlap in every pose: a fifth of the
+    play was missing.
+    """
+    found = compare_with_load(204)
+    assert not [one for one in found if one.outcome in ("wrong", "not balanced")], found
+
+
+def test_limits_of_pairs_that_all_but_touch_are_found():
+    """Costs of 1e-14 mm alone are an unbounded programme to HiGHS."""
+    assert "wrong" not in [one.outcome for one in compare_with_load(104)]
+
+
 @pytest.mark.slow
 @pytest.mark.nightly
 @pytest.mark.parametrize("first", range(0, 300, 20))
