@@ -6,7 +6,8 @@ A second table has other reducers on tables: discs, fixed wheel, cranks, support
 ``fe`` and ``hybrid`` start from the solution on tables as the engines do (included in their time). Without a file of
 ``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
 Values are the best of several rounds; compare ratios within one run. Evaluations are those of places, laws and flexibility of
-all contacts of a position, corrections of deformations and displaced pins among them.
+all contacts of a position, corrections of deformations and displaced pins among them; kernels are evaluations of Love's kernel
+of a line in slices for each loaded contact that an evaluation asks for, 1 in the plane, where laws read a table.
 """
 
 from __future__ import annotations
@@ -38,6 +39,7 @@ from ltca.equilibrium.balance import Equilibrium, solve_equilibrium
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.placement import position_angles
+from ltca.laws.sliced_line import SlicedLine
 from ltca.mechanics.contacts import Linearised
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.closed_form_bodies import closed_form_coefficients
@@ -53,20 +55,29 @@ def best(rounds: int, function: Callable[[], Equilibrium]) -> tuple[Equilibrium,
     return answer, seconds
 
 
-def evaluations(function: Callable[[], Equilibrium]) -> float:
-    """Return how often places, laws and flexibility of contacts were evaluated for each position."""
-    rows, plain = [0], Linearised.__init__
+def evaluations(function: Callable[[], Equilibrium]) -> tuple[float, float]:
+    """Return how often places, laws and flexibility of contacts were evaluated for each position, and in slices how often the
+    kernel of a law for each of its loaded contacts: laws of the plane read their table once.
+    """
+    rows, kernels, loaded = [0], [0], [0]
+    plain, coupling = Linearised.__init__, SlicedLine._coupling
 
     def counted(self: Linearised, *given: Any, **options: Any) -> None:
         plain(self, *given, **options)
         rows[0] += self.angle.size
+        if self.sliced:
+            loaded[0] += int(np.count_nonzero(self.load[:, 0]))
 
-    Linearised.__init__ = counted  # type: ignore[method-assign]
+    def counted_kernel(self: SlicedLine, load: np.ndarray, effective_radius: np.ndarray) -> Any:
+        kernels[0] += load.shape[1]
+        return coupling(self, load, effective_radius)
+
+    Linearised.__init__, SlicedLine._coupling = counted, counted_kernel  # type: ignore[method-assign, assignment]
     try:
         found = function()
     finally:
-        Linearised.__init__ = plain  # type: ignore[method-assign]
-    return rows[0] / found.crank_angle.size
+        Linearised.__init__, SlicedLine._coupling = plain, coupling  # type: ignore[method-assign]
+    return rows[0] / found.crank_angle.size, kernels[0] / loaded[0] if loaded[0] else 1.0
 
 
 def one_evaluation(model: Reducer, angles: np.ndarray, pose: np.ndarray) -> float:
@@ -101,14 +112,15 @@ def other_reducers(paper: Drive) -> dict[str, Drive]:
 
 def measure_others(paper: Drive, angles: np.ndarray, rounds: int, base: float) -> None:
     """Print the second table."""
-    print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'evaluations':>13}{'time by one disc':>20}")
+    print(f"\n{'':<24}{'equilibria/s':>14}{'iterations':>12}{'evaluations':>13}{'kernels':>9}{'time by one disc':>18}")
     for name, drive in other_reducers(paper).items():
         model = HalfSpace().prepare(drive).model
         solve = partial(solve_at_output, model, [drive], angles, drive.load.torque)
         found, seconds = best(rounds, solve)
+        contacts, kernels = evaluations(solve)
         print(
-            f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{evaluations(solve):>13.1f}"
-            f"{seconds / base:>20.1f}"
+            f"{name:<24}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{contacts:>13.1f}{kernels:>9.1f}"
+            f"{seconds / base:>18.1f}"
         )
 
 
@@ -146,7 +158,7 @@ def main() -> None:
             seconds += base
         each = min(one_evaluation(model, angles, found.pose) for _ in range(arguments.rounds)) / angles.size
         print(
-            f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{evaluations(solve):>13.1f}"
+            f"{name:<12}{angles.size / seconds:>14.0f}{found.iterations.mean():>12.1f}{evaluations(solve)[0]:>13.1f}"
             f"{1e3 * each:>15.3f}"
             f"{seconds / base:>20.1f}"
         )

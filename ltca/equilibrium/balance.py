@@ -35,6 +35,8 @@ TORQUE_RATIO = 8.0
 MAX_TORQUE_STEPS = 7
 """Most increases of the torque by `TORQUE_RATIO` in search of a start that balances."""
 LEAST_TORQUE_RATIO = 1.05
+FEWEST = 8
+"""Positions of a series of which one leads the others."""
 COARSER = 4
 """Leading positions for one that leads these, of several cranks."""
 FEW_ITERATIONS = 3
@@ -233,7 +235,9 @@ def _stages(
         if rest.size:
             yield rest, take_positions(inner, rest) if near else _place(search, rest)
         return
-    leaders = everything if leading.size == count else leading[0] + count * np.arange(series)
+    # Only positions under the same moment have neighbours.
+    apart = count < FEWEST or np.ptp(moment[:count]) > 0.0
+    leaders = everything if apart else leading[0] + count * np.arange(series)
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], moment[leaders])
     yield leaders, None
     rest = np.setdiff1d(everything, leaders, assume_unique=True)
@@ -243,7 +247,7 @@ def _stages(
     beside, alone = rest[led[rest // count]], rest[~led[rest // count]]
     # Seen from one of several cranks positions do differ: few beside the leader, and the others from between those before.
     levels = [beside]
-    if series == 1 and _is_costly(model):
+    if series == 1 and leading.size < count and _is_costly(model):
         some = np.isin(beside, leading)
         few = np.isin(beside, leading[::COARSER])
         levels = [beside[few], beside[some & ~few], beside[~some]]
