@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
-from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between
+from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between, turned
 from ltca.equilibrium.newton import Holding, Search
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
@@ -227,11 +227,19 @@ def _stages(
     leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count])
     if start is not None:
         pose[:] = start
-        first = leading if series == 1 else everything
+        leader = leading[0] + count * np.arange(series)
+        rest = everything
+        if count >= FEWEST and np.ptp(moment[:count]) == 0.0:
+            yield leader, take_positions(inner, leader)
+            rest = np.setdiff1d(everything, leader, assume_unique=True)
+            known = np.isin(leader, search.contacts()[0]) if search.balanced else np.zeros(series, dtype=bool)
+            moved = turned(pose[leader] - start[leader], -angle[leader], model.coordinates) * known[:, None]
+            pose[rest] += turned(moved[rest // count], angle[rest], model.coordinates)
+        first = np.intersect1d(rest, leading) if series == 1 else rest
         yield first, take_positions(inner, first)
-        rest = np.setdiff1d(everything, first, assume_unique=True)
+        rest = np.setdiff1d(rest, first, assume_unique=True)
         # A start that leads somewhere in a few steps is as good as what lies between neighbours.
-        near = np.median(search.iterations[first]) <= FEW_ITERATIONS or not search.balanced
+        near = not search.balanced or (not _is_costly(model) and np.median(search.iterations[first]) <= FEW_ITERATIONS)
         if rest.size:
             yield rest, take_positions(inner, rest) if near else _place(search, rest)
         return
@@ -295,7 +303,8 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
 def _is_costly(model: Reducer) -> bool:
     """Whether evaluations of a few positions take longer than what they save of many."""
     several = len(model.discs) * model.discs[0].geometry.placement.cranks > 1
-    return several or model.pins is not None or bool(model.coordinates.leans) or not model.symmetric
+    coupled = any(disc.coefficients is not None for disc in model.discs)
+    return several or coupled or model.pins is not None or bool(model.coordinates.leans) or not model.symmetric
 
 
 def _is_loose(model: Reducer) -> bool:

@@ -92,8 +92,8 @@ def pose_between(
     array([[0., 1., 0., 1.]])
     """
     around, weights = between(angle, wanted) if way is None else way
-    seen = _turned(pose, -angle, coordinates)
-    return _turned(np.einsum("wk,wkc->wc", weights, seen[around]), wanted, coordinates)
+    seen = turned(pose, -angle, coordinates)
+    return turned(np.einsum("wk,wkc->wc", weights, seen[around]), wanted, coordinates)
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:
@@ -119,10 +119,10 @@ def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: fl
     )
 
 
-def _turned(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:
-    """Poses whose displacements are turned by angles, rad; rotations stay."""
-    turned = pose.copy()
+def turned(pose: FloatArray, angle: FloatArray, coordinates: Coordinates) -> FloatArray:
+    """Return poses whose displacements are turned by angles, rad; rotations stay."""
+    found = pose.copy()
     for x in coordinates.displacements:
         place = (pose[:, x] + 1j * pose[:, x + 1]) * np.exp(1j * angle)
-        turned[:, x], turned[:, x + 1] = place.real, place.imag
-    return turned
+        found[:, x], found[:, x + 1] = place.real, place.imag
+    return found
