@@ -72,7 +72,7 @@ def evaluations(function: Callable[[], Equilibrium]) -> tuple[float, float]:
         kernels[0] += load.shape[1]
         return coupling(self, load, effective_radius)
 
-    Linearised.__init__, SlicedLine._coupling = counted, counted_kernel  # type: ignore[method-assign, assignment]
+    Linearised.__init__, SlicedLine._coupling = counted, counted_kernel  # type: ignore[method-assign]
     try:
         found = function()
     finally:
