@@ -82,6 +82,8 @@ TOGETHER = 4
 MAX_HALVINGS = 12
 STEEPEST = 0.3
 """Largest slope of the energy at the end of a correction by that at its start."""
+KINK = 10.0
+"""Slope behind the place of least energy by that before it from which a contact closes between them."""
 LEFT_WEIGHT = 100.0
 """What is left of the inner unknowns counts so many times: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
@@ -434,7 +436,7 @@ class Linearised:
             if system.coupled:  # a fair share of a rigid overlap
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
-        else:
+        elif system.coupled:
             e = np.where((self._within() | (e[:, 0] > 0.0))[:, None], e, self.overlap)
         if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
             e = e.copy()
@@ -832,8 +834,8 @@ class Linearised:
             low, low_slope = np.where(near, fraction, low), np.where(near, end, low_slope)
             rise = high_slope - low_slope
             place = np.divide(-low_slope, rise, out=np.full(rows, 0.5), where=rise != 0.0)
-            # A contact that closes has no slope before.
-            place = np.where(place > 0.0, place, 0.5).clip(0.1, 0.9)
+            # A contact that closes has no slope before, and a steep one behind: where is told by neither.
+            place = np.where((place > 0.0) & (high_slope < KINK * np.abs(low_slope)), place, 0.5).clip(0.1, 0.9)
             fraction = np.where(far, low + (high - low) * place, fraction)
         return found
 
