@@ -190,7 +190,8 @@ def test_runout_along_the_bore_offset(paper_cases):
 def _together_and_alone(drives, angles):
     model = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], angles.size)
     moment = drives[0].wheel_moment()
-    together = solve_equilibrium(Reducer(discs=(model,)), np.tile(angles, len(drives)), moment)
+    everywhere, series = np.tile(angles, len(drives)), len(drives)
+    together = solve_equilibrium(Reducer(discs=(model,)), everywhere, moment, series=series)
     pressures = model.pressures(together.response)
     for number, drive in enumerate(drives):
         own = HalfSpaceCompliance.of_drive(drive)
