@@ -51,4 +51,4 @@ def test_one_position_leads_few_others(positions):
     """Of positions too far apart to lie between others each began at first contact: 6.4 iterations for 3.2."""
     drive = load_drive("paper").cases["CS-1"]
     found = solve_at_output(HalfSpace().prepare(drive).model, [drive], position_angles(positions), drive.load.torque)
-    assert np.median(found.iterations) < found.iterations[0]
+    assert np.mean(found.iterations[1:]) < 0.7 * found.iterations[0]
