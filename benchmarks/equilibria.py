@@ -7,7 +7,8 @@ A second table has other reducers on tables: discs, fixed wheel, cranks, support
 ``cyclo derive paper --case CS-1`` closed-form bodies with fewer stations are used (`ltca.testing.closed_form_bodies`).
 Values are the best of several rounds; compare ratios within one run. Evaluations are those of places, laws and flexibility of
 all contacts of a position, corrections of deformations and displaced pins among them; kernels are evaluations of Love's kernel
-of a line in slices for each loaded contact that an evaluation asks for, 1 in the plane, where laws read a table.
+of a line in slices for each loaded contact that an evaluation asks for, 1 in the plane, where laws read a table;
+slices that do not feel each other have none.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
-from ltca.equilibrium.neighbours import between, leading_positions, pose_between, start_between, turned
+from ltca.equilibrium.neighbours import between, have_neighbours, leading_positions, pose_between, start_between, turned
 from ltca.equilibrium.newton import Holding, Search
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
@@ -35,10 +35,8 @@ TORQUE_RATIO = 8.0
 MAX_TORQUE_STEPS = 7
 """Most increases of the torque by `TORQUE_RATIO` in search of a start that balances."""
 LEAST_TORQUE_RATIO = 1.05
-FEWEST = 8
-"""Positions of a series of which one leads the others."""
 COARSER = 4
-"""Leading positions for one that leads these, of several cranks."""
+"""Leading positions for one that leads these, where evaluations take long."""
 FEW_ITERATIONS = 3
 """Iterations that a nearby start takes at most."""
 
@@ -229,7 +227,7 @@ def _stages(
         pose[:] = start
         leader = leading[0] + count * np.arange(series)
         rest = everything
-        if count >= FEWEST and np.ptp(moment[:count]) == 0.0:
+        if have_neighbours(moment[:count]):
             yield leader, take_positions(inner, leader)
             rest = np.setdiff1d(everything, leader, assume_unique=True)
             known = np.isin(leader, search.contacts()[0]) if search.balanced else np.zeros(series, dtype=bool)
@@ -243,9 +241,7 @@ def _stages(
         if rest.size:
             yield rest, take_positions(inner, rest) if near else _place(search, rest)
         return
-    # Only positions under the same moment have neighbours.
-    apart = count < FEWEST or np.ptp(moment[:count]) > 0.0
-    leaders = everything if apart else leading[0] + count * np.arange(series)
+    leaders = leading[0] + count * np.arange(series) if have_neighbours(moment[:count]) else everything
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], moment[leaders])
     yield leaders, None
     rest = np.setdiff1d(everything, leaders, assume_unique=True)
@@ -253,7 +249,7 @@ def _stages(
     if search.balanced:
         led[search.contacts()[0] // count] = True
     beside, alone = rest[led[rest // count]], rest[~led[rest // count]]
-    # Seen from one of several cranks positions do differ: few beside the leader, and the others from between those before.
+    # Where evaluations take long, or several cranks make positions differ: few beside the leader, then those between them.
     levels = [beside]
     if series == 1 and leading.size < count and _is_costly(model):
         some = np.isin(beside, leading)

@@ -26,6 +26,11 @@ Way: TypeAlias = tuple[NDArray[np.intp], FloatArray]
 """Known positions around wanted ones and their weights, shape (wanted, positions around)."""
 
 
+def have_neighbours(moment: FloatArray) -> bool:
+    """Return whether positions under moments on the wheel, N·mm, are enough, all under the same, for one to lead others."""
+    return moment.size >= WORTH * RESOLVED and not np.ptp(moment) > 0.0
+
+
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
     """Return which positions of one drive to balance first; all of them where neighbours are no help.
 
@@ -33,7 +38,7 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
     """
     everything = np.arange(angle.size)
     place = geometry.placement
-    if angle.size < WORTH * RESOLVED or np.ptp(moment) > 0.0:
+    if not have_neighbours(moment):
         return everything
     order = np.argsort(angle, kind="stable")
     passages = max(place.reduction_ratio, place.hole_radii.shape[-1], place.roller_radii.shape[-1] // place.cranks)
@@ -70,9 +75,8 @@ def between(angle: FloatArray, wanted: FloatArray) -> Way:
     uneven = steps.max(axis=1, initial=0.0) > UNEVEN * steps.min(axis=1, initial=np.inf)
     rows = np.nonzero(uneven)[0]
     before = (behind - 1 - first)[rows]
-    span = steps[rows, before]
-    part = np.divide((x[:, 0] - place[:, 0])[rows], span, out=np.zeros(rows.size), where=span > 0.0)
-    part -= np.divide((place[rows, before] - place[rows, 0]), span, out=np.zeros(rows.size), where=span > 0.0)
+    span, ahead = steps[rows, before], x[rows, 0] - place[rows, before]
+    part = np.divide(ahead, span, out=np.zeros(rows.size), where=span > 0.0)
     weights[rows] = 0.0
     weights[rows, before], weights[rows, before + 1] = 1.0 - part, part
     return order[around], weights

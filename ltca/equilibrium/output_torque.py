@@ -236,7 +236,7 @@ class OutputTorque:
         return moments
 
     def balanced(self, model: Reducer, found: Equilibrium, balance: Balance | None = None) -> Equilibrium:
-        """Find the moments on held wheels by secants, from positions balanced at the mean moment of a turn.
+        """Find the moments on held wheels by secants, where the search has not come close enough (`holding`).
 
         Positions are followed by Newton's method, or solved anew by `balance` from poses near by.
         """

@@ -720,13 +720,16 @@ class Linearised:
 
     def _state(self, fraction: FloatArray | None = None) -> State:
         """Inner unknowns after the correction."""
-        approach = self.after
+        system, approach = self.system, None
+        if system.deforms:
+            approach = self.after
         shifts = self.shifts_after
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
             part = fraction[:, None]
             place, lean = self.place + part * (place - self.place), self.lean + part * (lean - self.lean)
-            approach = self.deformation + part[..., None] * (approach - self.deformation)
+            if approach is not None:
+                approach = self.deformation + part[..., None] * (approach - self.deformation)
         if fraction is not None and shifts is not None and self.shifts is not None:
             shifts = self.shifts + fraction[:, None, None] * (shifts - self.shifts)
         return State(
