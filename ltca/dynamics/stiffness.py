@@ -5,8 +5,9 @@ those of the forces on the members, and of the force on that motion, differenced
 first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a
 vibration is said by ``[damping]``.
 
-The tangent takes radii of curvature and influence coefficients as they stand, which is 1e-5 to 3e-4 of it, and of frequencies
-half as much (`ltca.analysis.derivatives`); stiffnesses are made symmetric, which is as much: what is left out is no potential's.
+The tangent of the pose is the whole one (`ltca.mechanics.full_tangent`), made symmetric: contacts whose radii of curvature and
+influence coefficients follow the pose have no potential, and what is not symmetric of it, 1e-5 to 3e-4, alters frequencies by the
+square.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance.response import Response, Start
 from ltca.dynamics.kinetics import Motion
-from ltca.equilibrium.balance import Equilibrium
+from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 
@@ -40,7 +41,8 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
     """
     angle, pose, start = found.crank_angle, found.pose, Start.after(found.response)
     contacts = replace(model, stage=None, friction=None, external=None)
-    tangent = contacts.respond(angle, pose, start).tangent
+    lever = np.broadcast_to(lever_arms(model), pose.shape)
+    tangent = contacts.whole_tangent(angle, pose, start, lever)
     if model.stage is not None and model.supports is not None:
         # What bearings of cranks with clearance or preload yield depends on all that they carry.
         carried = model.carried_beside_discs(angle, pose, found.response.parts)

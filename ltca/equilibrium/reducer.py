@@ -48,6 +48,7 @@ from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.carrier import far_flange_stiffness
 from ltca.mechanics.answers import disc_response
 from ltca.mechanics.contacts import ContactSystem, Linearised
+from ltca.mechanics.full_tangent import with_whole_tangent
 
 POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
@@ -203,6 +204,18 @@ class Reducer:
         for some, at in others:
             found = put_positions(found, some, self.take(some)._evaluated(at))
         return found
+
+    def whole_tangent(self, crank_angle: FloatArray, pose: FloatArray, start: Start, lever: FloatArray) -> FloatArray:
+        """Return the derivative of the force by the pose, with what the search leaves out, shape (positions, coordinates,
+        coordinates); `lever` are the lengths by which coordinates are displacements, mm (`ltca.mechanics.full_tangent`).
+        """
+        most = min(POSITIONS_AT_ONCE, ContactSystem(self).positions_at_once)
+        found = []
+        for rows in np.array_split(np.arange(crank_angle.size), -(-crank_angle.size // most)):
+            own = self.take(rows)
+            at = ContactSystem(own).respond(*take_positions((crank_angle, pose, start), rows), roughly=False)
+            found.append(own._evaluated(with_whole_tangent(at, lever[rows])).tangent)
+        return np.concatenate(found)
 
     def _evaluated(self, at: Linearised) -> Evaluation:
         """What a search asks for of contacts at poses, with supports, friction of bearings and forces from outside."""

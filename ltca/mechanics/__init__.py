@@ -6,6 +6,7 @@ places           Places of the contacts of a disc at poses, and the inner unknow
 pressing         What contacts press the coordinates of discs with, rollers where they stand
 elimination      Deformations, displacements of pins and places of rollers eliminated
 contacts         All contacts at poses with everything elastic that couples them, linearised
+full_tangent     The whole tangent: with what a search leaves out
 answers          What the contacts of a disc answer at poses
 energy           What contacts store, with the bodies and pins behind them
 ===============  ================================================================================================

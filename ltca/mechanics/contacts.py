@@ -61,7 +61,7 @@ from ltca.mechanics.places import (
     places_of,
     with_crank,
 )
-from ltca.mechanics.pressing import Pressing, pressing_of
+from ltca.mechanics.pressing import BySlope, Pressing, pressing_of
 
 if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
@@ -318,6 +318,8 @@ class Linearised:
     members: PinMembers
     off_by: FloatArray
     """What is left of the deformations, r, mm."""
+    by_slope: BySlope | None = None
+    """What the tangent has beyond that of a search (`ltca.mechanics.full_tangent`)."""
 
     def __init__(
         self,
@@ -343,20 +345,14 @@ class Linearised:
         # Rollers are placed in them: those of another evaluation stay as they are.
         self.discs: list[DiscPlaces] = self._placed(state) if before is None else [copy(disc) for disc in before.discs]
         self._approach(state)
-        if system.components == 1:
-            self._carry_in_plane()
-        else:
-            self._carry(state, roughly)
+        self._carry(state)
         self._choose()
         self.de_by_pose: FloatArray | None = None
         self.aside: FloatArray | None = None
         self.sticking: list[tuple[FloatArray, FloatArray, FloatArray]] = []
         self.rubs: list[FloatArray] = []
         self.rubs_leaning: list[FloatArray] = []
-        if system.plain:
-            eliminate_rollers(self)
-        else:
-            self._linearise()
+        self.linearise()
         self.before = None
 
     def _placed(self, state: State) -> list[DiscPlaces]:
@@ -452,8 +448,21 @@ class Linearised:
         most = np.max(reach, axis=1, initial=0.0)[:, None]
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
-    def _carry_in_plane(self) -> None:
+    def stand(self, pose: FloatArray, state: State) -> None:
+        """Put the parts somewhere else while the contacts stay deformed as they are: places and loads follow."""
+        self.pose, self.known = pose, None
+        self.discs = self._placed(state)
+        self._carry(state)
+
+    def _carry(self, state: State) -> None:
         """Loads of all contacts at their deformations, and their derivatives."""
+        if self.system.components == 1:
+            self._carry_in_plane()
+        else:
+            self._carry_in_slices(state)
+
+    def _carry_in_plane(self) -> None:
+        """The same in the plane."""
         system, e = self.system, self.deformation[:, 0]
         self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
         self.sliced: list[list[SlicedContact]] = []
@@ -474,14 +483,14 @@ class Linearised:
                 found = law.take(closed.shape, closed).load_and_stiffness(e[:, kind][closed], radius[:, kind][closed])
                 self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = found
 
-    def _carry(self, state: State, roughly: bool) -> None:
+    def _carry_in_slices(self, state: State) -> None:
         """The same with tilts, moments and their derivatives."""
         system, e = self.system, self.deformation
         self.load = np.zeros(e.shape)
         self.stiffness = np.zeros((3, e.shape[0], e.shape[2]))
         self.sliced = []
         self.law_left = np.zeros(e.shape[0])
-        exactness = sliced.ROUGH if roughly else sliced.EXACT
+        exactness = sliced.ROUGH if self.roughly else sliced.EXACT
         for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
             radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
             found = []
@@ -605,8 +614,20 @@ class Linearised:
             found = np.maximum(found, np.max(0.5 * stiff * curved * moved[:, disc], axis=1, initial=0.0))
         return found
 
-    def _linearise(self) -> None:
+    def bodies_between(self) -> list[list[BodyFlexibility]]:
+        """What bodies yield between the chosen contacts where these are, by disc and component."""
+        return [
+            []
+            if model.coefficients is None
+            else model.body_flexibility(self.body_places(disc), self.chosen[disc][:3])[: self.system.components]
+            for disc, model in enumerate(self.system.model.discs)
+        ]
+
+    def linearise(self) -> None:
         """Eliminate deformations, displacements of pins and places of rollers."""
+        if self.system.plain:
+            eliminate_rollers(self)
+            return
         if self.system.coupled:
             eliminate_coupled(self)
         else:
@@ -894,6 +915,8 @@ class Linearised:
             pins = self.system.model.pins
             assert pins is not None
             change = loads_of(self.chosen_stiffness, self.de_by_pose)
+            if self.by_slope is not None:
+                change += self.by_slope.load
             each = np.moveaxis(change, -1, 0)
             aside = [None] * self.size if self.aside is None else np.moveaxis(self.aside[..., :-1], -1, 0)
             shifts = np.stack(

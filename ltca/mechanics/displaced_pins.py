@@ -380,9 +380,14 @@ class PinBlocks:
         seats = self.pins if held.ring is not None else 0
         nothing = [np.zeros((rows, components, self.pairs, size))] * self.discs
         turn = self.of_contacts(nothing, turn)
-        moved_by = g - np.matmul(flexible, turn)
+        extra = turn
+        if at.by_slope is not None:
+            slopes = [at.by_slope.load[:, :, at.at[d][0].start : at.at[d][3].stop] for d in range(self.discs)]
+            by_slope = self.of_contacts([on_pins(each, d) for d, each in enumerate(slopes)])
+            extra = turn + by_slope
+        moved_by = g - np.matmul(flexible, extra)
         if held.ring is not None:
-            moved_by = moved_by - self._through_ring(by, onto, turn)
+            moved_by = moved_by - self._through_ring(by, onto, extra)
         right = np.concatenate((moved_by, short), axis=-1)
         if seats:
             units = np.zeros((rows, self.pairs, self.entries, 2))
@@ -406,6 +411,8 @@ class PinBlocks:
             back = solved(core, moved).reshape(rows, seats, 2, -1)
             x[:, :seats] -= np.matmul(units, back)
         kx = self.pressed(stiffness, x).reshape(rows, self.pairs * self.entries, size + 1)
+        if at.by_slope is not None:
+            kx[..., :size] += by_slope.reshape(rows, -1, size)
         flat = onto_pose.reshape(rows, self.pairs * self.entries, size).swapaxes(1, 2)
         taken = np.matmul(flat, kx)
         # What loads turn with the pose is in the tangent at rest already.

@@ -80,6 +80,8 @@ def eliminate_rollers(at: Any) -> None:
         back = np.concatenate((gradient, of_bores), axis=1).swapaxes(1, 2)
         stiff = np.concatenate((stiffness[:, pins], stiffness[:, holes]), axis=1)[..., None]
         pressed = np.concatenate((stiff * gradient, np.matmul(springs, moved).reshape(of_bores.shape)), axis=1)
+        if at.by_slope is not None:
+            pressed[:, : system.pins] += at.by_slope.load[:, 0, pins][..., own]
         pushes = -pushes.reshape(rows, -1)
         force = np.matmul(back, np.concatenate((load[:, pins], load[:, holes], pushes), axis=1)[..., None])[..., 0]
         tangent = np.matmul(back, pressed)
@@ -112,6 +114,8 @@ def eliminate_by_disc(at: Any) -> None:
         outward, inward = part.presses
         rollers, components, count = part.placed.shape[1:]
         pressed = loads_of(part.stiffness, part.g)
+        if at.by_slope is not None:
+            pressed += at.by_slope.load[:, :, at.at[disc][0].start : at.at[disc][3].stop][..., own]
         if on_pins is None:
             mine = [part.force_map, pressed]
         else:  # those of pins and holes are found together
@@ -143,7 +147,7 @@ def eliminate_by_disc(at: Any) -> None:
         at.de_by_pose = np.zeros((*at.load.shape, size))
         force, tangent = force + on_pins[0], tangent + on_pins[1]
         at.aside = on_pins[4]
-        if not at.sticking and system.model.friction is None:
+        if not at.sticking and system.model.friction is None and at.by_slope is None:
             tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
     for disc, part in enumerate(pressing):
         pins, bores, holes, races = system.of_kind[disc]
@@ -266,7 +270,12 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
         for component in range(components):
             t[:, component, places, own, component] = press[:, component]
     flat = t.reshape(rows, components * count, rollers * components)
-    moved_by = g.reshape(rows, each, size)
+    moved_by, by_slope = g.reshape(rows, each, size), None
+    if at.by_slope is not None:
+        by_slope = np.zeros(g.shape)
+        by_slope[:, :, :mine] = at.by_slope.load
+        moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), by_slope.reshape(rows, each, size))
+        moved_by.reshape(g.shape)[:, :, :mine] -= at.by_slope.taken
     if at.shifts is not None:
         moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), turn)
     right = np.concatenate((moved_by, flat, left.reshape(rows, each, 1)), axis=-1)
@@ -279,6 +288,8 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
     found = solved(system_matrix, right)
     x = found.reshape(rows, components, count, right.shape[-1])
     kx = loads_of(stiffness, x).reshape(rows, components * count, right.shape[-1])
+    if by_slope is not None:
+        kx[..., :size] += by_slope.reshape(rows, each, size)
     back = np.concatenate((force_map.reshape(rows, each, size), flat), axis=-1)
     products = np.matmul(back.swapaxes(1, 2), kx)
     if at.shifts is not None:
@@ -314,7 +325,7 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
         pressed = loads_of(stiffness[:, :, mine:], moved[:, :, mine:])
         pressed[..., :-1] += turn.reshape(rows, components, count, size)[:, :, mine:]
         aside = at.members.of_all(pressed)
-    if not at.sticking and system.model.friction is None:
+    if not at.sticking and system.model.friction is None and at.by_slope is None:
         tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
     return Eliminated(
         force=force,
@@ -386,12 +397,7 @@ def _find_bodies(at: Any) -> None:
     ):
         at.bodies = before.bodies
         return
-    at.bodies = [
-        []
-        if model.coefficients is None
-        else model.body_flexibility(at.body_places(disc), at.chosen[disc][:3])[: at.system.components]
-        for disc, model in enumerate(at.system.model.discs)
-    ]
+    at.bodies = at.bodies_between()
 
 
 def _positions(at: Any, number: int) -> Indices:

@@ -50,6 +50,15 @@ class Pressing(NamedTuple):
     tangent: FloatArray
 
 
+class BySlope(NamedTuple):
+    """How loads of the chosen contacts, and what bodies take of their approaches, follow the pose while deformations and loads
+    stay, shape (positions, components, chosen, coordinates).
+    """
+
+    load: FloatArray
+    taken: FloatArray
+
+
 def pressing_of(at: Any, disc: int) -> Pressing:
     """What the chosen contacts of a disc press its own coordinates with, rollers where they stand (Eq. 66, 70–72)."""
     places, some, (_, bores, _, races) = at.discs[disc], at.chosen[disc], at.local[disc]
