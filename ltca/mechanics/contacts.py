@@ -137,7 +137,7 @@ class ContactSystem:
         entries = self.components * self.contacts
         if self.model.pins is not None:
             entries += self.components * self.discs * (self.pins + self.holes)
-        return max(1, int(WORKING_MEMORY / (8.0 * entries * (entries if self.coupled else self.coordinates.size))))
+        return max(1, int(WORKING_MEMORY / (8.0 * entries * (entries if self.deforms else self.coordinates.size))))
 
     @cached_property
     def every_contact(self) -> tuple[list[list[Indices]], list[list[slice]], list[slice], list[list[slice]]]:
@@ -432,7 +432,7 @@ class Linearised:
             if system.coupled:  # a fair share of a rigid overlap
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
-        elif system.coupled:
+        elif system.deforms:
             e = np.where((self._within() | (e[:, 0] > 0.0))[:, None], e, self.overlap)
         if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
             e = e.copy()
@@ -516,7 +516,7 @@ class Linearised:
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
         system = self.system
-        self.every = not system.coupled
+        self.every = not system.deforms
         if self.every:
             self.chosen, self.at, self.of_rollers, self.local = system.every_contact
             self.count = system.contacts
@@ -628,7 +628,7 @@ class Linearised:
         if self.system.plain:
             eliminate_rollers(self)
             return
-        if self.system.coupled:
+        if self.system.deforms:
             eliminate_coupled(self)
         else:
             eliminate_by_disc(self)
@@ -878,7 +878,7 @@ class Linearised:
     def yielding(self) -> list[list[FloatArray]]:
         """What the bodies take of the approaches on pins, bores and holes, and of their tilts, by disc and component."""
         found: list[list[FloatArray]] = []
-        for disc, bodies in enumerate(self.bodies if self.system.coupled else []):
+        for disc, bodies in enumerate(self.bodies):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
             found.append([])
             for component, body in enumerate(bodies):
@@ -891,13 +891,16 @@ class Linearised:
     def leaves_out(self) -> NDArray[np.bool_]:
         """Positions where a contact of coupled bodies that was left out is pressed together after all."""
         found = np.zeros(self.angle.size, dtype=bool)
-        if not self.system.coupled or not np.isfinite(self.margin):
+        if not self.system.deforms or not np.isfinite(self.margin):
             return found
         for disc, yielding in enumerate(self.yielding):
             some, kinds = self.chosen[disc], self.system.of_kind[disc]
-            for kind, part in enumerate(
+            parts = (
                 np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)
-            ):
+                if yielding
+                else 3 * [0.0]
+            )
+            for kind, part in enumerate(parts):
                 reach = self.overlap[:, 0, kinds[kind]] - part
                 if self.system.components > 1:
                     reach = reach + np.abs(self.overlap[:, 1, kinds[kind]])
@@ -930,10 +933,22 @@ class Linearised:
         if self.system.coupled:
             by_pose = self.of_all_rollers(self.dx_by_pose)
         else:
-            by_pose = np.concatenate(self.by_own, axis=1) if len(self.by_own) > 1 else self.by_own[0]
+            by_own = self.by_own
+            if not self.every:
+                shape = self.angle.size, self.system.rollers
+                by_own = [np.zeros((*shape, *own.shape[2:])) for own in self.by_own]
+                for found, own, some in zip(by_own, self.by_own, self.chosen, strict=True):
+                    found[self.row, some[1]] = own
+            by_pose = np.concatenate(by_own, axis=1) if len(by_own) > 1 else by_own[0]
             if len(self.by_own) > 1:
                 columns = tuple(tuple(own.tolist()) for own in self.columns)
-        by_approach = None if self.de_by_pose is None else self.of_all(self.de_by_pose)
+        by_approach = None
+        if self.de_by_pose is not None:
+            by_approach = np.zeros((*self.load.shape, self.size))
+            of_approach = by_approach[:, 0]
+            for at, own, (pins, _, holes, _) in zip(self.discs, self.system.columns, self.system.of_kind, strict=True):
+                of_approach[:, pins, own], of_approach[:, holes, own] = at.flank.gradient, at.holes.gradient
+            by_approach[self.row, :, self.contacts] = self.de_by_pose.swapaxes(1, 2)
         return Inner(
             pose=with_crank(self.pose, self.angle) if self.by_crank else self.pose,
             place=state.place,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.mechanics.displaced_pins import PinBlocks, PinMembers, solved
+from ltca.mechanics.displaced_pins import PinMembers, solved
 from ltca.mechanics.places import Indices, by_rows
 from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gradient_with_crank, turn_with_cages
 
@@ -103,23 +103,20 @@ def eliminate_rollers(at: Any) -> None:
 
 
 def eliminate_by_disc(at: Any) -> None:
-    """The same where nothing deforms but the contacts: disc by disc, roller by roller."""
+    """The same where nothing deforms but the contacts: disc by disc, roller by roller; displaced pins as if at rest."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
-    force, tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
-    dx, by_own = [], []
-    pressing = at.pressing
-    on_pins = None if system.model.pins is None else _on_displaced_pins(at)
-    for disc, (part, own) in enumerate(zip(pressing, at.columns, strict=True)):
+    at.force, at.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
+    dx, at.by_own = [], []
+    for disc, (part, own) in enumerate(zip(at.pressing, at.columns, strict=True)):
         _, bores, _, races = at.local[disc]
         outward, inward = part.presses
         rollers, components, count = part.placed.shape[1:]
         pressed = loads_of(part.stiffness, part.g)
         if at.by_slope is not None:
             pressed += at.by_slope.load[:, :, at.at[disc][0].start : at.at[disc][3].stop][..., own]
-        if on_pins is None:
-            mine = [part.force_map, pressed]
-        else:  # those of pins and holes are found together
-            mine = [np.concatenate((each[:, :, bores], each[:, :, races]), axis=2) for each in (part.g, pressed)]
+        mine = [part.force_map, pressed]
+        if at.shifts is not None:
+            mine = [np.concatenate((each[:, :, bores], each[:, :, races]), axis=2) for each in mine]
         flat, along = (each.reshape(rows, -1, count) for each in mine)
         held_by = part.tangent + np.matmul(flat.swapaxes(1, 2), along)
         pushed = outward[..., None] * pressed[:, :, bores] + inward[..., None] * pressed[:, :, races]
@@ -135,69 +132,19 @@ def eliminate_by_disc(at: Any) -> None:
         taken = np.matmul(back, placing.reshape(rows, rollers * components, count + 1))
         held_by -= taken[..., :-1]
         if system.discs == 1:
-            force, tangent = part.force - taken[..., -1], held_by
+            at.force, at.tangent = part.force - taken[..., -1], held_by
         else:
-            force[:, own] += part.force - taken[..., -1]
-            tangent[:, own[:, None], own] += held_by
+            at.force[:, own] += part.force - taken[..., -1]
+            at.tangent[:, own[:, None], own] += held_by
         dx.append(-placing[..., -1])
-        by_own.append(-placing[..., :-1])
-    at.dx, at.by_own = _bounded(at, np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0]), by_own
-    at.de = np.zeros(at.load.shape)
-    if on_pins is not None:
-        at.de_by_pose = np.zeros((*at.load.shape, size))
-        force, tangent = force + on_pins[0], tangent + on_pins[1]
-        at.aside = on_pins[4]
-        if not at.sticking and system.model.friction is None and at.by_slope is None:
-            tangent = 0.5 * (tangent + tangent.swapaxes(1, 2))
-    for disc, part in enumerate(pressing):
-        pins, bores, holes, races = system.of_kind[disc]
+        at.by_own.append(-placing[..., :-1])
+    at.dx = _bounded(at, np.concatenate(dx, axis=1) if len(dx) > 1 else dx[0])
+    at.de = np.zeros((rows, system.components, at.count))
+    for disc, part in enumerate(at.pressing):
+        _, bores, _, races = at.at[disc]
         outward, inward = part.presses
         moved = at.dx[:, at.of_rollers[disc]].swapaxes(1, 2)
         at.de[:, :, bores], at.de[:, :, races] = outward * moved, inward * moved
-        if on_pins is None or at.de_by_pose is None:
-            continue
-        own = at.columns[disc]
-        _, at_bores, _, at_races = at.local[disc]
-        by_place = by_own[disc].swapaxes(1, 2)
-        for kind, local, press in ((bores, at_bores, outward), (races, at_races, inward)):
-            at.de_by_pose[:, :, kind, own] = part.g[:, :, local] + press[..., None] * by_place
-        for kind, some in ((pins, slice(0, system.pins)), (holes, slice(system.pins, None))):
-            at.de[:, :, kind] = on_pins[2][:, :, disc, some]
-            at.de_by_pose[:, :, kind] = on_pins[3][:, :, disc, some]
-    at.force, at.tangent = force, tangent
-
-
-def _on_displaced_pins(at: Any) -> tuple[FloatArray, ...]:
-    """Force and tangent that contacts on displaced pins add, and corrections of their deformations at the pose and by it."""
-    pins, shifts = at.system.model.pins, at.shifts
-    assert pins is not None
-    assert shifts is not None
-    members = at.members = PinMembers(at)
-    left = at.deformation - at.overlap
-    left += members.approaches(members.unsettled(shifts))
-    blocks, moves = PinBlocks(members), not at.held
-    found = blocks.eliminated(at.pressing, left, turning=moves)
-    if moves:
-        change = np.zeros(at.load.shape)
-        for disc, kinds in enumerate(at.system.of_kind):
-            change[:, :, kinds[0]] = found[2][:, :, disc, : at.system.pins]
-            change[:, :, kinds[2]] = found[2][:, :, disc, at.system.pins :]
-        near = _is_near(at, change, at.stiffness)
-        if not near.all():
-            # Far off loads may turn with soft pins more than these hold against.
-            still = blocks.eliminated(at.pressing, left, turning=False)
-            found = tuple(by_rows(near, *each) for each in zip(found, still, strict=True))
-    left = left + _moved_aside(at, found[4])
-    at.off_by = left
-    wanted = np.abs(left).sum(axis=1)
-    matters = (at.stiffness[0] > 0.0) | (at.deformation[:, 0] - left[:, 0] > 0.0)
-    at.off = np.max(wanted * matters, axis=1, initial=0.0)
-    for disc, part in enumerate(at.pressing):
-        _, bores, _, races = at.local[disc]
-        stiff = part.stiffness[0][:, bores] + part.stiffness[0][:, races]
-        apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
-        at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
-    return found
 
 
 def _moved_aside(at: Any, aside: FloatArray) -> FloatArray:
@@ -208,19 +155,67 @@ def _moved_aside(at: Any, aside: FloatArray) -> FloatArray:
 
 
 def eliminate_coupled(at: Any) -> None:
-    """The same where bodies deform under the loads of all contacts, and beams and a ring with them."""
+    """The same where bodies deform under the loads of all contacts, or where beams and a ring displace pins."""
     _find_bodies(at)
-    part = assembled(at)
-    stiffness, bores, races = at.chosen_stiffness, _positions(at, 1), _positions(at, 3)
-    whole, left = _flexibility(at, part.load)
+    every = assembled(at)
+    if at.shifts is not None:
+        at.members = PinMembers(at)
+    part = every if at.system.coupled else _on_pins(at, every)
+    whole, left = _flexibility(at, part)
     moves = at.shifts is not None and not at.held
-    found = _eliminate(at, part, whole, left, turning=moves)
-    if moves and not (close := _is_near(at, found.de, stiffness)).all():
+    found = _eliminate(at, part, whole, left[:, :, part.which], turning=moves)
+    if moves and not (close := _is_near(at, found.de, part.stiffness)).all():
         # Far off loads may turn with soft pins more than these hold against.
-        still = _eliminate(at, part, whole, left, turning=False)
+        still = _eliminate(at, part, whole, left[:, :, part.which], turning=False)
         found = Eliminated(*(by_rows(close, *each) for each in zip(found, still, strict=True)))
     if found.aside is not None:
         left = left + _moved_aside(at, found.aside)
+    at.aside = found.aside
+    if at.system.coupled:
+        at.force, at.tangent, at.dx, at.dx_by_pose, at.de, at.de_by_pose, _ = found
+    else:
+        eliminate_by_disc(at)
+        _beside_rollers(at, found)
+    _find_off(at, every.unbalanced, left)
+
+
+def _on_pins(at: Any, part: Pressing) -> Pressing:
+    """What contacts on pins press alone."""
+    some, chosen = at.members.place, {}
+    for name in ("g", "force_map", "load"):
+        chosen[name] = getattr(part, name)[:, :, some]
+    for name in ("unbalanced", "placed", "own_bend"):
+        chosen[name] = getattr(part, name)[:, :0]
+    return part._replace(
+        **chosen,
+        stiffness=part.stiffness[:, :, some],
+        presses=tuple(press[:, :, :0] for press in part.presses),
+        rolls=(some[:0], some[:0]),
+        force=np.zeros(part.force.shape),
+        tangent=np.zeros(part.tangent.shape),
+        which=some,
+    )
+
+
+def _beside_rollers(at: Any, found: Eliminated) -> None:
+    """Add what contacts on displaced pins press and deform to what rollers do."""
+    some = at.members.place
+    at.force, at.tangent = at.force + found.force, at.tangent + found.tangent
+    at.de[:, :, some] = found.de
+    at.de_by_pose = np.zeros((*at.de.shape, at.size))
+    at.de_by_pose[:, :, some] = found.de_by_pose
+    for disc, part in enumerate(at.pressing):
+        for kind, press in zip((1, 3), part.presses, strict=True):
+            mine, local = at.at[disc][kind], at.local[disc][kind]
+            by_place = press[..., None] * at.by_own[disc].swapaxes(1, 2)
+            at.de_by_pose[:, :, mine, at.columns[disc]] = part.g[:, :, local] + by_place
+    if not at.sticking and at.system.model.friction is None and at.by_slope is None:
+        at.tangent = 0.5 * (at.tangent + at.tangent.swapaxes(1, 2))
+
+
+def _find_off(at: Any, unbalanced: FloatArray, left: FloatArray) -> None:
+    """What is left of the deformations where it matters, as lengths."""
+    stiffness, bores, races = at.chosen_stiffness, _positions(at, 1), _positions(at, 3)
     at.off_by = at.of_all(left)
     wanted = np.abs(left).sum(axis=1)
     expected = at.of_chosen(at.deformation)[:, 0] - left[:, 0]
@@ -233,9 +228,8 @@ def eliminate_coupled(at: Any) -> None:
         wanted[:, places] = np.where(free, both, wanted[:, places])
     matters = (stiffness[0] > 0.0) | (expected > 0.0)
     at.off = np.max(wanted * matters, axis=1, initial=0.0)
-    apart = np.abs(part.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+    apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
     at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
-    at.force, at.tangent, at.dx, at.dx_by_pose, at.de, at.de_by_pose, at.aside = found
 
 
 def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> Eliminated:
@@ -266,16 +260,16 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
     each = components * count
     t = np.zeros((rows, components, count, rollers, components))
     own = np.arange(rollers)
-    for press, places in zip(presses, (_positions(at, 1), _positions(at, 3)), strict=True):
+    for press, places in zip(presses, part.rolls, strict=True):
         for component in range(components):
             t[:, component, places, own, component] = press[:, component]
     flat = t.reshape(rows, components * count, rollers * components)
     moved_by, by_slope = g.reshape(rows, each, size), None
     if at.by_slope is not None:
         by_slope = np.zeros(g.shape)
-        by_slope[:, :, :mine] = at.by_slope.load
+        by_slope[:, :, :mine] = at.by_slope.load[:, :, part.which]
         moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), by_slope.reshape(rows, each, size))
-        moved_by.reshape(g.shape)[:, :, :mine] -= at.by_slope.taken
+        moved_by.reshape(g.shape)[:, :, :mine] -= at.by_slope.taken[:, :, part.which]
     if at.shifts is not None:
         moved_by = moved_by - np.matmul(whole.reshape(rows, each, each), turn)
     right = np.concatenate((moved_by, flat, left.reshape(rows, each, 1)), axis=-1)
@@ -283,8 +277,7 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
         stiffness, whole.reshape(rows, components * count, components, count).transpose(0, 2, 3, 1)
     )
     system_matrix = system_matrix.transpose(0, 3, 1, 2).reshape(rows, components * count, components * count)
-    own = np.arange(components * count)
-    system_matrix[:, own, own] += 1.0
+    system_matrix[:, np.arange(each), np.arange(each)] += 1.0
     found = solved(system_matrix, right)
     x = found.reshape(rows, components, count, right.shape[-1])
     kx = loads_of(stiffness, x).reshape(rows, components * count, right.shape[-1])
@@ -349,7 +342,7 @@ def _bounded(at: Any, dx: FloatArray) -> FloatArray:
     """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
     than the slopes know of.
     """
-    if at.system.components == 1:
+    if at.system.components == 1 or not dx.size:
         return dx
     each = [0.5 * (places.room + at.half * np.abs(places.at_race - places.at_bore)) for places in at.discs]
     room = np.concatenate([at.picked(one, own[1]) for one, own in zip(each, at.chosen, strict=True)], axis=1)
@@ -358,15 +351,13 @@ def _bounded(at: Any, dx: FloatArray) -> FloatArray:
     return np.asarray(dx * np.divide(room, long, out=np.ones(long.shape), where=long > room)[..., None])
 
 
-def _flexibility(at: Any, load: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """W among the chosen contacts, shape (positions, components, chosen, components, chosen), and what is left of their
-    deformations, r.
+def _flexibility(at: Any, part: Pressing) -> tuple[FloatArray, FloatArray]:
+    """W among contacts and of what slips on displaced pins, shape (positions, components, entries, components, entries), and what
+    is left of the deformations of the chosen contacts, r.
     """
     system = at.system
-    rows, components, count = load.shape
-    members = None
-    if at.shifts is not None:
-        members = at.members = PinMembers(at)
+    rows, components, count = part.load.shape
+    members = None if at.shifts is None else at.members
     entries = count + (0 if members is None else members.count)
     whole = np.zeros((rows, components, entries, components, entries))
     for disc, bodies in enumerate(at.bodies):
@@ -380,7 +371,7 @@ def _flexibility(at: Any, load: FloatArray) -> tuple[FloatArray, FloatArray]:
             mine[:, first, second] = mine[:, second, first] = body.across_roller
     left = at.of_chosen(at.deformation - at.overlap)
     if system.coupled:
-        left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], load)
+        left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], part.load)
     if members is not None and at.shifts is not None and system.model.pins is not None:
         left += members.approaches(members.unsettled(at.shifts))
         members.add_flexibility(whole)

@@ -10,7 +10,7 @@ from ltca.arrays import FloatArray
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pair_motion import dot
 from ltca.mechanics.displaced_pins import solved
-from ltca.mechanics.places import DiscPlaces
+from ltca.mechanics.places import DiscPlaces, Indices
 
 
 class Pressing(NamedTuple):
@@ -36,6 +36,10 @@ class Pressing(NamedTuple):
         How it follows the places likewise.
     force, tangent : array, shapes (positions, coordinates) and (positions, coordinates, coordinates)
         What presses the coordinates, and how that follows them where loads do not.
+    rolls : tuple of array of int
+        Where the contacts of the rollers stand among these, in bores and on races.
+    which : array of int, or slice
+        Numbers of the contacts among the chosen ones.
     """
 
     g: FloatArray
@@ -48,6 +52,8 @@ class Pressing(NamedTuple):
     own_bend: FloatArray
     force: FloatArray
     tangent: FloatArray
+    rolls: tuple[Indices, Indices]
+    which: Indices | slice = slice(None)
 
 
 class BySlope(NamedTuple):
@@ -92,6 +98,7 @@ def pressing_of(at: Any, disc: int) -> Pressing:
         own_bend=bend * slant**2,
         force=np.zeros((rows, size)),
         tangent=tangent,
+        rolls=(np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)),
     )
     flat = found.force_map.reshape(rows, -1, size).swapaxes(1, 2)
     found.force[:] = np.matmul(flat, load.reshape(rows, -1, 1))[..., 0]
@@ -247,6 +254,8 @@ def assembled(at: Any) -> Pressing:
         force[:, own] += part.force
         tangent[:, own[:, None], own] += part.tangent
     outward, inward = (np.concatenate([part.presses[way] for part in at.pressing], axis=2) for way in (0, 1))
+    bores, races = (np.concatenate([np.arange(own[kind].start, own[kind].stop) for own in at.at]) for kind in (1, 3))
+    rolls = bores, races
     return Pressing(
         g=g,
         force_map=force_map,
@@ -258,6 +267,7 @@ def assembled(at: Any) -> Pressing:
         own_bend=np.concatenate([part.own_bend for part in at.pressing], axis=1),
         force=force,
         tangent=tangent,
+        rolls=rolls,
     )
 
 

@@ -160,7 +160,7 @@ def test_drawn_drives_have_the_tangent_of_their_force(drawn):
 
 def test_displaced_pins_are_followed_until_they_settle(tmp_path, monkeypatch):
     """Curvatures follow the pins as these follow the pose: with one pass they would go by what the search takes for it."""
-    drive, model = prepared("sleeved", tmp_path)
+    drive, model = prepared("paper, ring", tmp_path)
     angle = SOME_ANGLES[:1]
     found = solve_at_output(model, [drive], angle, drive.load.torque)
     start, lever = Start.after(found.response), np.broadcast_to(lever_arms(model), found.pose.shape)
