@@ -204,6 +204,16 @@ def test_what_stations_miss_of_a_function_with_a_pole_a_wall_away():
     assert 2.0 / np.expm1(2.0 * np.pi / LARGEST_DISTANCE) == pytest.approx(1.0, rel=1e-12)
 
 
+def test_thickness_of_a_wall_whose_stations_do_not_face_each_other():
+    """The wall is thinner than points along it are apart: its thickness is the distance to the line between them."""
+    thickness, angle = 0.1, 2.0 * np.pi * np.arange(40) / 40
+    turned = np.pi / (40 * 12)  # half of a twelfth of a station
+    outer, inner = RADIUS * np.exp(1j * angle), (RADIUS - thickness) * np.exp(1j * (angle + turned))
+    _, wall, _ = missed_between_stations(np.repeat([0, 1], 40), np.concatenate((outer, inner)))
+    sagitta = RADIUS * (1.0 - np.cos(turned))  # of the outer chords, towards the inner points
+    assert wall == pytest.approx(thickness - sagitta, rel=1e-6)
+
+
 def test_coefficients_of_a_thin_wall_are_not_refused_for_its_bending():
     """Those of 5 pins with a wall of 0.585 mm were rejected as 'near field 1.044' right after they had been derived."""
     data, bending = made(), np.array([0.08, 0.0])

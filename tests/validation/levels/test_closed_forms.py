@@ -1,0 +1,13 @@
+"""Closed forms of the first level."""
+
+import pytest
+
+from ltca.reading.drive_file import load_drive
+from validation.levels.closed_forms import power_rows
+
+
+def test_mean_tangential_load_of_the_paper_is_torque_by_ratio_and_eccentricity():
+    """T/(u e) = 377.3 N·m/(14 · 4 mm): the mean over whole periods of the flank, of 13 teeth by 26 positions."""
+    (row,) = power_rows(load_drive("paper").cases["CS-1"], positions=26)
+    assert row.reference == pytest.approx(377_300.0 / (14.0 * 4.0), rel=1e-12)
+    assert row.value == pytest.approx(row.reference, rel=row.limit)
