@@ -28,3 +28,21 @@ def test_a_force_further_along_the_axis_adds_its_moment(held, frame):
         change = far[f"main_bearing_moment_{name}"] - near[f"main_bearing_moment_{name}"]
         np.testing.assert_allclose(change, -expected[:, axis], rtol=1e-9, atol=1e-9 * 45.0 * abs(force[0]))
         np.testing.assert_allclose(far[f"main_bearing_{name}"], near[f"main_bearing_{name}"], rtol=1e-9)
+
+
+def test_a_flank_that_leans_the_other_way_turns_the_moment_round():
+    """The mirror image in mid-width: forces stay, moments of contacts in slices turn round. They are a part of F L/2."""
+    paper, angle = load_drive("paper").cases["CS-1"], np.array([0.05, 2.1])
+    one, other = (
+        reaction_values(analyse(with_fields(paper, {"contact.slices": 5, "disc.lead_slope": slope}), angle))
+        for slope in (2e-4, -2e-4)
+    )
+    force = np.hypot(one["main_bearing_x"], one["main_bearing_y"]).max()
+    arm = force * 0.5 * paper.disc.thickness
+    largest = 0.0
+    for name in "xy":
+        np.testing.assert_allclose(one[f"main_bearing_{name}"], other[f"main_bearing_{name}"], atol=1e-6 * force)
+        moment = one[f"main_bearing_moment_{name}"]
+        np.testing.assert_allclose(moment, -other[f"main_bearing_moment_{name}"], atol=1e-6 * arm)
+        largest = max(largest, float(np.abs(moment).max()))
+    assert 1e-3 * arm < largest < arm

@@ -146,6 +146,22 @@ def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
     assert told == pytest.approx(4.0 * 0.05 * 377_300.0 * (88.0 - pin) / (np.pi * 4.0 * 14.0**2), rel=2e-3)
 
 
+def test_what_bearings_and_seals_take_by_hand():
+    """1/η − 1 is what is lost by a radian of the crank, by T/z_P: f F (r_i + r_BR), f r T/(e z_P), and i T₀/z_P."""
+    whole = 377_300.0 / 14.0
+
+    def lost(lines):
+        told = forms(PAPER + f"[friction]\n{lines}\n" + STEEL)
+        return 1.0 / told["mean_efficiency"] - 1.0, told["bearing_load"]
+
+    part, force = lost("roller = 0.002")
+    assert part == pytest.approx(0.002 * force * (29.5 - 10.0 + 5.0) / whole, rel=1e-9)
+    part, _ = lost("support_bearing = 0.003\nsupport_bearing_radius = 12.0")
+    assert part == pytest.approx(0.003 * 12.0 * whole / 4.0 / whole, rel=1e-9)
+    part, _ = lost("no_load_torque = 60.0")
+    assert part == pytest.approx(60.0 / whole, rel=1e-9)
+
+
 def test_sizes_between_two_have_one_ratio_to_both():
     first, second = dict(ROW), ROW | {"pin_circle": 66.0, "thickness": 20.0, "bore": 29.5, "holes": 6.0}
     middle = _between(first, second)
