@@ -1,4 +1,4 @@
-"""Variables of a file of solid bodies: those of plane strain with the differences of the same loads, seen under the same patches."""
+"""Variables of a file of solid bodies: those of plane strain with the differences of the same loads and patches."""
 
 from types import SimpleNamespace
 

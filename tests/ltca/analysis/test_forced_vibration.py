@@ -311,7 +311,7 @@ def test_two_discs_without_offsets_answer_with_the_pulsation_at_every_speed():
 
 
 def test_a_drive_that_turns_as_one_has_no_transmission_error(usual):
-    """Its input turns and its output with it by the ratio: the row of the error sees neither; it sees the output alone as it is."""
+    """Its input turns and its output with it by the ratio: the row of the error sees neither, but the output alone."""
     row, motion = _deviation(usual), usual.motion
     assert abs(float(row @ motion.rigid)) < 1e-12 * abs(float(motion.output_turns @ motion.rigid))
     alone = np.where(motion.input_turns != 0.0, 0.0, motion.output_turns)

@@ -18,9 +18,7 @@ def test_a_force_further_along_the_axis_adds_its_moment(held, frame):
     drive = load_drive("paper").cases["CS-1"]
     drive = with_fields(drive, FORCE | {"installation.held": held, "load.external.0.frame": frame})
     angle = np.array([0.05, 2.1])
-    far, near = (
-        reaction_values(analyse(with_fields(drive, {"load.external.0.at.z": z}), angle)) for z in (60.0, 15.0)
-    )
+    far, near = (reaction_values(analyse(with_fields(drive, {"load.external.0.at.z": z}), angle)) for z in (60.0, 15.0))
     turn = angle / drive.reduction_ratio * (-1.0 if held == "pin-wheel" else 1.0)
     force = complex(800.0, -300.0) * np.exp(1j * (turn if frame == "output" else np.zeros(2)))
     expected = np.cross([0.0, 0.0, 45.0], np.stack([force.real, force.imag, np.zeros(2)], axis=1))

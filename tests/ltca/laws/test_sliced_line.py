@@ -216,7 +216,7 @@ def test_slices_much_narrower_than_the_contact_are_told():
 
 @pytest.mark.parametrize("overlap", [2e-7, 6.7e-7])
 def test_energy_less_a_wall_that_counts_twice(overlap):
-    """Loads and moments are slopes of the energy where the compliance of a sleeve's wall is subtracted, near its bound as well."""
+    """Loads and moments are slopes of the energy where the compliance of a sleeve's wall is subtracted, up to its bound."""
     relief = 1e-5 * slice_heights(LENGTH, 9) ** 2
     line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=9, relief=relief, sleeve=0.5, overlap=overlap)
     radius, step = np.full(3, 6.0), 1e-6
