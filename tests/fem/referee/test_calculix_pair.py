@@ -1,9 +1,11 @@
 """Nodes of a pair in the deck for CalculiX."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from fem.referee.calculix_pair import write_pair_deck
+from fem.referee.calculix_pair import face_means, write_pair_deck
 from fem.solid_contact.pair_shapes import SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, solve_pair
 from ltca.drive.parts import Material
@@ -36,3 +38,19 @@ def test_the_body_opposite_is_round_crowned_and_in_the_loaded_pose(tilt, tmp_pat
         assert own[-1] == pytest.approx(1.0, abs=1e-8)
         assert np.all(np.diff(own) > 0.0)
     assert len({across for across, _ in columns}) >= 9
+
+
+@pytest.mark.parametrize(
+    ("symmetric", "even", "columns", "layers"), [(False, False, 4, 6), (True, False, 2, 6), (True, True, 2, 3)]
+)
+def test_means_over_faces_are_those_of_their_corners(symmetric, even, columns, layers):
+    """Of a pressure that is bilinear they are its values in the middle; only faces that are in the deck count."""
+    x, z = np.arange(5.0), np.arange(7.0)
+    solved = SimpleNamespace(
+        pressure=3.0 + 2.0 * x[:, None] + 0.5 * z + 0.25 * x[:, None] * z,
+        pair=SimpleNamespace(symmetric=symmetric),
+        width=SimpleNamespace(even=even),
+    )
+    x, z = x[:-1][-columns:] + 0.5, z[:-1][-layers:] + 0.5
+    expected = 3.0 + 2.0 * x[:, None] + 0.5 * z + 0.25 * x[:, None] * z
+    np.testing.assert_allclose(face_means(solved), expected, rtol=1e-14)

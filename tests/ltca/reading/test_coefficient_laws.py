@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ltca.contact.round_bodies import compressed_cylinder
+from ltca.contact.round_bodies import compressed_cylinder, held_ring_approach
 from ltca.geometry.boundary_stations import clustered_parameter
 from ltca.reading import coefficient_laws
 from ltca.reading.coefficient_laws import (
@@ -139,6 +139,17 @@ def test_what_a_file_states_of_itself_is_bounded(name):
     del data.attrs[name]
     assert [what for law, what in unstated_laws(data).items() if law not in before] == [name]
     assert all(check.passed for check in check_coefficients(data))
+
+
+def test_what_a_race_is_off_the_held_ring_counts_by_the_largest_approach():
+    data, inner, outer = made(), 10.0, 19.5
+    angle, nu = 2.0 * np.pi * np.arange(8) / 8, MATERIALS["race"][1]
+    data["race_half_width"] = 0.15
+    ring = held_ring_approach(inner, outer, 0.15, 3.0 - 4.0 * nu, angle)
+    wrong = ring + 1e-3 * np.abs(ring).max() * (np.arange(8) == 3)
+    for values, off in ((ring, 0.0), (wrong, 1e-3)):
+        data["race_approach"] = "lag", UNIT["race"] * values
+        assert coefficient_laws._off_held_ring(data, "race", inner, outer) == pytest.approx(off, rel=1e-9, abs=1e-12)
 
 
 def test_even_pressure_is_the_arc_between_stations():

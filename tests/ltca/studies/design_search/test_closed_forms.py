@@ -16,8 +16,10 @@ from ltca.studies.design_search.closed_forms import (
     Setting,
     closed_forms,
     flank_values,
+    inner_values,
     lives_by_loads,
     shape_values,
+    wheel_torque,
 )
 from ltca.studies.design_search.demands import find_demands, written_limits
 from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
@@ -160,6 +162,29 @@ def test_what_bearings_and_seals_take_by_hand():
     assert part == pytest.approx(0.003 * 12.0 * whole / 4.0 / whole, rel=1e-9)
     part, _ = lost("no_load_torque = 60.0")
     assert part == pytest.approx(60.0 / whole, rel=1e-9)
+
+
+def test_spare_lengths_are_counted_by_a_fiftieth_of_the_drive():
+    for diameter in (190.0, 95.0):
+        demands = find_demands(parse_requirements(PAPER.replace("190.0", f"{diameter}") + STEEL))
+        assert {one.scale for one in demands} == {diameter / 50.0}
+    (wall,) = [one for one in demands if one.name == "wall"]
+    assert wall.margin(wall.value + 1.9) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_bearings_of_several_cranks_carry_most_where_both_forces_point_alike():
+    """One goes round with the crank, the other stands: over a turn the largest is their sum, sampled every 30°."""
+    text = PAPER.replace("discs = 1", 'kind = "rv"\ncranks = 3').replace("shaft_pin_stiffness = 1.0e6", "")
+    text = text.replace("pin_hole_clearance = 0.0\n", "").replace('held = "pin-shaft"\n', "")
+    row = ROW | {"stage": 1.0, "holes": 3.0, "discs": 2.0}
+    without_shaft_pins = STEEL.replace('shaft_pin = "100Cr6"', "")
+    sizes, setting = Sizes.of_rows([row]), Setting.of(parse_requirements(text + without_shaft_pins))
+    radial = float(flank_values(sizes, setting)["radial"][0])
+    told = inner_values(sizes, setting, flank_values(sizes, setting))
+    torque = float(wheel_torque(sizes, setting)[0]) / 2.0
+    standing = abs(complex(-radial, torque / (4.0 * 14.0))) / 3.0
+    around = torque * 13.0 / 14.0 / (3.0 * 56.0)
+    assert (standing + around) * np.cos(np.pi / 12.0) <= told["bearing_load"][0] <= standing + around
 
 
 def test_sizes_between_two_have_one_ratio_to_both():
