@@ -15,6 +15,7 @@ from ltca.geometry.placement import position_angles
 from ltca.studies.design_search.closed_forms import (
     Setting,
     closed_forms,
+    disc_shares,
     flank_values,
     inner_values,
     lives_by_loads,
@@ -185,6 +186,32 @@ def test_bearings_of_several_cranks_carry_most_where_both_forces_point_alike():
     standing = abs(complex(-radial, torque / (4.0 * 14.0))) / 3.0
     around = torque * 13.0 / 14.0 / (3.0 * 56.0)
     assert (standing + around) * np.cos(np.pi / 12.0) <= told["bearing_load"][0] <= standing + around
+    # What rolls takes goes with the mean force by the power 10/3 over the whole turn.
+    text += "[friction]\nroller = 0.002\n"
+    sizes, setting = Sizes.of_rows([row]), Setting.of(parse_requirements(text + without_shaft_pins))
+    lost = 1.0 / float(inner_values(sizes, setting, flank_values(sizes, setting))["mean_efficiency"][0]) - 1.0
+    turn = np.exp(2j * np.pi * np.arange(720) / 720.0)
+    force = np.abs(complex(-radial, torque / (4.0 * 14.0)) / 3.0 + around * turn)
+    mean = np.mean(force ** (10.0 / 3.0)) ** 0.3
+    assert lost * torque / 14.0 == pytest.approx(0.002 * 3.0 * mean * (29.5 - 10.0 + 5.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_shares_of_discs_on_pins_tied_by_a_ring_that_turns_on(discs):
+    """Pins clamped in the flange and guided at their tips, by virtual work: M(s) = (x − s)₊ − x²/2L of a unit force at x."""
+    row = ROW | {"discs": float(discs), "thickness": 8.0}
+    setting = Setting.of(parse_requirements(PAPER.replace("shaft_pin_stiffness = 1.0e6", "disc_gap = 1.0") + STEEL))
+    sizes, alone, turned = Sizes.of_rows([row]), np.array([2e-10]), np.array([4e-4])
+    span = float(stack_length(sizes, 1.0)[0]) + 2.0
+    places = 0.5 * span + 9.0 * (np.arange(discs) - 0.5 * (discs - 1))
+    s = span * (np.arange(20_000) + 0.5) / 20_000
+    moments = np.array([np.maximum(x - s, 0.0) - x**2 / (2.0 * span) for x in places])
+    rigidity = setting.pin_modulus * np.pi * (2.0 * 10.075) ** 4 / 64.0
+    bent = moments @ moments.T * (span / 20_000) / rigidity
+    torque = np.linalg.solve(bent * turned[0] + alone[0] * np.eye(discs), np.ones(discs))
+    expected = discs * torque.min() / torque.sum()
+    assert 0.05 < expected < 0.99
+    assert disc_shares(sizes, setting, alone, turned)[0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_sizes_between_two_have_one_ratio_to_both():
