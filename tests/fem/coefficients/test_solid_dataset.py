@@ -7,7 +7,8 @@ import pytest
 import xarray as xr
 
 from fem.coefficients import solid_dataset
-from fem.coefficients.solid_dataset import _joined, _Solid
+from fem.coefficients.solid_dataset import _joined, _Solid, with_solid_bodies
+from fem.mesh.boundary_division import MAX_TURN
 from ltca.reading.drive_file import load_drive
 
 STATIONS, LAGS = 3, 4
@@ -58,3 +59,22 @@ def test_wide_patches_are_seen_under_their_own_load(monkeypatch):
         np.testing.assert_allclose(
             found[f"{body}_approach"], given[f"{body}_approach"] * drive.disc.thickness / length, rtol=1e-12
         )
+
+
+def test_the_coarser_solution_has_twice_the_edges_and_a_layer_less(monkeypatch):
+    """Whatever size is asked: its difference is the convergence estimate of the file."""
+    meshes = []
+
+    def derive(drive, shapes, places, mesh, options, note):
+        meshes.append((mesh.size, mesh.turn, options.layers))
+        if len(meshes) == 2:
+            raise InterruptedError
+
+    monkeypatch.setattr(solid_dataset, "_derive", derive)
+    drive = load_drive("paper").cases["CS-1"]
+    given = SimpleNamespace(attrs={"code_hash": "0"})
+    with pytest.raises(InterruptedError):
+        with_solid_bodies(
+            given, drive, None, SimpleNamespace(count=9), size=3.0, layers=4, tell=print, store=lambda _: None
+        )
+    assert meshes == [(6.0, 2.0 * MAX_TURN, 3), (3.0, MAX_TURN, 4)]
