@@ -21,13 +21,3 @@ def test_under_an_arm_the_input_has_the_mean_torque_of_a_whole_turn(frame):
     torque = analyse(drive, position_angles(72)).crank_torques.sum(axis=1)
     assert run.equation.input_torque == pytest.approx(torque.mean(), rel=1e-6)
     assert abs(np.mean(torque[:36]) / torque.mean() - 1.0) > 1e-3
-
-
-def test_a_drive_that_rubs_is_driven_by_more_than_its_ratio_asks():
-    """The mean torque of quasi-static losses, within what slips of smooth friction leave of it: 1e-3."""
-    masses = {"inertia.output": 0.5, "inertia.input": "1.2 kg cm²"}
-    drive = with_fields(load_drive("paper").cases["CS-1"], masses | {"friction.pin": 0.05, "friction.hole": 0.05})
-    run = prepare_run(drive, HalfSpace(), Course.of_values("steady", 1e-3, 1500.0, "torque"))
-    torque = analyse(drive, position_angles(72)).losses.input_torque.mean()
-    assert run.equation.input_torque == pytest.approx(torque, rel=1e-3)
-    assert torque > 1.03 * drive.load.torque / drive.reduction_ratio
