@@ -448,7 +448,7 @@ class SlottedCircle:
         along = np.clip(np.angle(arm), -self.half_arc, self.half_arc)
         on_seat = np.abs(own - self.seat_circle_radius - self.seat_radius * np.exp(1j * along))
         polar = np.angle(own)
-        polar = np.where(np.abs(polar) < self.opening, np.where(polar < 0.0, -1.0, 1.0) * self.opening, polar)
+        polar = np.copysign(np.maximum(np.abs(polar), self.opening), polar)  # the circle ends at its corners
         on_circle = np.abs(own - self.radius * np.exp(1j * polar))
         rise = land / (0.5 * self.pitch - self.opening)
         beside = np.where(polar < 0.0, rise * (polar + 0.5 * self.pitch), land + wall + rise * (polar - self.opening))

@@ -136,6 +136,10 @@ CONTENTS = {
     "matrix negative": (scaled("disc_approach", -1.0), "smallest eigenvalue"),
     "a bit asymmetric": (lambda file: file["disc_approach"].__setitem__((3, 40), 0.0), "symmetry"),
     "moved": (lambda file: file["station_x"].__setitem__(7, file["station_x"][7] + 0.01), "half-widths of its patch"),
+    "moved back": (
+        lambda file: file["station_x"].__setitem__(7, file["station_x"][7] - 0.01),
+        "half-widths of its patch",
+    ),
     "not a number": (lambda file: file["race_approach"].__setitem__(3, np.nan), "no finite numbers"),
     "thickness": (lambda file: file.attrs.__setitem__("thickness", 118.0), "must be 11.8 as in shape"),
     "missing": (lambda file: file.__delitem__("race_approach"), "race_approach"),

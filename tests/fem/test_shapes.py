@@ -91,6 +91,11 @@ def test_disc_area_matches_a_fine_polygon(shapes: DriveShapes) -> None:
     assert shapes.disc.area == pytest.approx(polygon - circles, abs=1e-4)
 
 
+def test_area_of_a_circle_about_its_core() -> None:
+    assert CircleShape(name="pin_0", radius=3.0, core_radius=1.0).area == pytest.approx(8.0 * np.pi, rel=1e-14)
+    assert CircleShape(name="pin_0", radius=3.0).area == pytest.approx(9.0 * np.pi, rel=1e-14)
+
+
 def test_parameter_of_inverts_points(shapes: DriveShapes) -> None:
     theta = np.linspace(0.001, 6.28, 997)
     for curve in (*shapes.disc.curves, *shapes.inner_race.curves):

@@ -40,3 +40,15 @@ def test_the_picture(tmp_path):
     for label in ("Persson", "Hertz", "half the arc α, degrees", "α = 84°"):
         assert label in drawn
         assert label in kept
+
+
+def test_hertz_is_the_limit_of_small_loads_in_the_picture(tmp_path, monkeypatch):
+    from matplotlib.figure import Figure
+
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+    draw(tmp_path / "seats.svg")
+    for axes in figures[0].axes[:2]:
+        drawn = {line.get_label(): line.get_ydata() for line in axes.get_lines()}
+        assert drawn["Hertz"][0] == pytest.approx(drawn["law"][0], rel=0.01)
+        assert drawn["Hertz"][-1] > 1.5 * drawn["law"][-1] or drawn["Hertz"][-1] < 0.7 * drawn["law"][-1]

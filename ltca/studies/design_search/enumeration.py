@@ -297,10 +297,8 @@ def _inner(
                 count = np.where(beside, float(more), count)
             fits = (length > 0.0) & (count > 0.0)
         fits &= (bore - 2.0 * r - e > shop.least_race) & (circle > 0.0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            number = np.floor(
-                np.pi / np.arcsin(np.clip((r + 0.5 * shop.roller_gap(2.0 * r)) / (bore - r), 0.0, 1.0)) + 1e-9
-            )
+        with np.errstate(invalid="ignore", divide="ignore"):  # not a number where no two rollers fit beside each other
+            number = np.floor(np.pi / np.arcsin((r + 0.5 * shop.roller_gap(2.0 * r)) / (bore - r)) + 1e-9)
         fits &= number >= LEAST_ROLLERS
         if not fits.any():
             continue

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem.body import pin_ring
 from fem.body.pin_ring import flexibility_of, seat_flexibility, seat_loads
 from fem.coefficients.ring import derive_ring
 from fem.mesh.element_size import Refinement
@@ -327,6 +328,21 @@ def test_rings_that_cannot_be_meshed_are_refused_by_name(joint, change, told):
     beam = with_fields(joint, {"ring": SIZES | {"model": "beam"} | change})
     with pytest.raises(DriveError, match=told):  # the ring of full finite elements, whatever the model
         seat_flexibility(beam)
+
+
+def test_rings_of_full_solutions_have_the_elements_of_derived_ones(joint, small, monkeypatch):
+    """Their flexibilities are compared to 1e-4, less than the mesh leaves of each: neither is asked for a size."""
+    sizes = []
+
+    def stop(shape, bolts, patch, size):
+        sizes.append(size)
+        raise InterruptedError
+
+    monkeypatch.setattr(pin_ring, "mesh_ring_for_seats", stop)
+    for solve in (lambda: seat_flexibility(joint), lambda: flexibility_of(small, NO_BOLTS, 0.3, 0.3)):
+        with pytest.raises(InterruptedError):
+            solve()
+    assert sizes == [1.0, 1.0]
 
 
 @pytest.mark.slow

@@ -76,6 +76,17 @@ def test_candidates_and_their_half_widths(drive):
     np.testing.assert_allclose(soft.holes.half_width[on] / graded.holes.half_width[on], np.sqrt(2.0), rtol=1e-12)
 
 
+def test_contacts_of_a_roller_lie_opposite_each_other(drive):
+    """In the bore along its ray, on the inner race the other way: where elements of the roller are made small."""
+    guess = expect_contacts(drive, 0.7)
+    loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
+    pose = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
+    graded = grade_contacts(drive, RigidBodies.of_drive(drive, 0.7), *pose, loads, margin=0.0, smallest_share=0.05)
+    outer, inner = (np.exp(1j * group.direction) for group in (graded.rollers_outer, graded.rollers_inner))
+    np.testing.assert_allclose(inner, -outer, atol=1e-12)
+    np.testing.assert_allclose(outer, graded.race_points / np.abs(graded.race_points), atol=1e-12)
+
+
 def test_elements_lie_where_a_soft_disc_presses(drive):
     """Pressure found beside the place where the rigid bodies meet: small elements, and those of the pin, go there."""
     guess = expect_contacts(drive, 0.7)

@@ -59,6 +59,21 @@ def test_a_moment_that_follows_the_crank():
     assert abs(found.left_over[-1]) <= MOMENT_TOLERANCE * abs(TOTAL)
 
 
+def test_others_make_up_for_a_disc_that_a_step_would_let_go():
+    """A slope a third of the true one sends disc 2 past zero; the moments of every trial add up to that of the wheel."""
+    play, tried = np.array([-4e-4, -3.5e-4, -9e-4]), []
+
+    def early(moment):
+        tried.append(moment.copy())
+        return SharedAnswer(wheel_angle=play + SOFTNESS * moment, left_over=float(moment.sum()) - TOTAL)
+
+    found = share_moment(early, np.full(3, TOTAL / 3.0), SOFTNESS * np.array([1.0, 1.0, 0.3]))
+    np.testing.assert_allclose(np.sum(tried, axis=1), TOTAL, rtol=1e-12)
+    assert abs(tried[1][2]) < 2e-3 * abs(TOTAL)  # let go, but for a thousandth of the mean share
+    angle = (TOTAL + np.sum(play / SOFTNESS)) / np.sum(1.0 / SOFTNESS)
+    np.testing.assert_allclose(found.moment, (angle - play) / SOFTNESS, rtol=1e-9)
+
+
 def test_a_disc_that_carries_nothing_is_named():
     def one_idle(moment):
         return SharedAnswer(

@@ -93,6 +93,12 @@ def test_layers_are_thin_where_ends_carry():
     assert np.diff(alone).min() == pytest.approx(0.1, rel=0.1)
 
 
+def test_an_overhang_shorter_than_a_layer_is_one_layer():
+    ends, inner = grade_heights(10.0, 5.01, 5.0, True, 0.1, 1.0)
+    assert ends.size == inner + 2
+    assert (ends[inner], ends[-1]) == (5.0, 5.01)
+
+
 @pytest.fixture(scope="module")
 def roller():
     pair = SolidPair.of_drive(paper(), "bore", 0.5)

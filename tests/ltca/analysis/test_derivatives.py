@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ltca
-from ltca.analysis.derivatives import LostMotion
+from ltca.analysis.derivatives import CENTRAL, FORWARD, LostMotion
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.torque_curve import torque_curve
 from ltca.drive.fields import read_field
@@ -330,3 +330,11 @@ def test_lost_motion_of_other_drives(name, paper_cases):
 def test_lost_motion_by_what_is_no_field_is_refused(paper_cases):
     with pytest.raises(DriveError, match=r"disc\.thicknes"):
         LostMotion(paper_cases["CS-3"], ONE).slope("disc.thicknes")
+
+
+@pytest.mark.parametrize("stencil", [CENTRAL, FORWARD], ids=["central", "forward"])
+def test_differences_are_exact_up_to_the_fourth_power(stencil):
+    """Slope at zero of 1, s, …, s⁴: 1 of s, 0 of all others."""
+    places, weights = stencil
+    slopes = [float(weights @ places**power) for power in range(5)]
+    np.testing.assert_allclose(slopes, [0.0, 1.0, 0.0, 0.0, 0.0], atol=1e-13)

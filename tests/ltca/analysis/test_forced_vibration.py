@@ -12,6 +12,7 @@ import xarray as xr
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.forced_vibration import (
     MOST_TRUNCATION,
+    _deviation,
     _force,
     _nominal_forces,
     _orders,
@@ -307,3 +308,12 @@ def test_two_discs_without_offsets_answer_with_the_pulsation_at_every_speed():
     }
     found = vibration(with_fields(drive, change), engine=HalfSpace(), positions=4, turns=4, torque_parts=())
     assert forced_vibration(found, fastest=3000.0, speeds=12).mean_at.size == 0
+
+
+def test_a_drive_that_turns_as_one_has_no_transmission_error(usual):
+    """Its input turns and its output with it by the ratio: the row of the error sees neither, but the output alone."""
+    row, motion = _deviation(usual), usual.motion
+    assert abs(float(row @ motion.rigid)) < 1e-12 * abs(float(motion.output_turns @ motion.rigid))
+    alone = np.where(motion.input_turns != 0.0, 0.0, motion.output_turns)
+    assert np.any(alone)
+    np.testing.assert_allclose(row * (motion.input_turns == 0.0), alone, rtol=1e-12)

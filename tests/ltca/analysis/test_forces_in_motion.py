@@ -184,3 +184,13 @@ def test_forces_are_those_of_the_response(usual):
         loads = here.at_rest[WHEEL_PIN] + added
         largest, resting = max(largest, loads.max()), max(resting, here.at_rest[WHEEL_PIN].max())
     assert found.factors["wheel pins"][0] == pytest.approx(largest / resting, rel=1e-12)
+
+
+def test_a_motion_turned_round_takes_as_much_torque(usual):
+    """The largest departure of the torque is one of either sense."""
+    _, _, orders, _, moved = answer(usual, 900.0)
+    moved[0] = 1e-3 * np.abs(moved[1:]).max()  # a mean beside the waves: the largest departures of both senses differ
+    both = np.stack((moved, -moved))
+    one, other = forces_in_motion(usual, model_of(usual), orders, both, np.array([0])).torque_ratio
+    assert one > 0.0
+    assert one == pytest.approx(other, rel=1e-12)

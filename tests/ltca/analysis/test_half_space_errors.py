@@ -9,11 +9,13 @@ import pytest
 
 from ltca.analysis.engines import HalfSpace, Hybrid
 from ltca.analysis.half_space_errors import (
+    LARGEST_DISTANCE,
     body_fingerprint,
     half_space_caution,
     half_space_cautions,
     half_space_words,
     measured,
+    nearest_shipped,
 )
 from ltca.commands.compliance_arguments import (
     add_compliance_arguments,
@@ -127,3 +129,11 @@ def test_quick_was_what_the_drive_file_says():
         )
     hybrid = replace(PAPER, analysis=replace(PAPER.analysis, compliance="hybrid"))
     assert half_space_words(HalfSpace(asked=True), hybrid).startswith("half-spaces, as asked: ")
+
+
+def test_a_drive_with_loose_pins_is_as_far_from_one_with_fixed_pins_as_a_drive_may_be():
+    """Of the shipped drives only `sleeved` has loose pins, and no part that yields in common with a drive of rigid parts."""
+    seat = {"pin_wheel.seat.kind": "slot", "pin_wheel.seat.radius": 1.01 * PAPER.pin_wheel.pin_radius}
+    name, distance = nearest_shipped(PAPER.with_fields(seat))
+    assert name == "paper"
+    assert distance == pytest.approx(LARGEST_DISTANCE, abs=1e-5)

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.half_width_guard import (
@@ -93,6 +94,36 @@ def test_loose_and_bent_pins_are_warned_of_as_well():
     assert re.search(r"the surfaces at wheel pin \d+ depart from the parabola of the tables by [\d.]+ %", told[0])
     assert "--method direct" not in told[0]
     assert analyse(drive, np.array([angle]), 0.01 * torque).warnings == []
+
+
+def test_the_departure_that_is_told_is_that_of_the_surfaces():
+    """Gaps of pin and flank a half-width beside the contact on both sides, by circle and flank, against b²/2ρ.
+
+    Two digits are told; the flank is followed by its parameter, and its cubic term counted for less by a tenth.
+    """
+    drive, angle = one_disc_of(116)
+    loose = {"pin_wheel.seat.kind": "slot", "pin_wheel.seat.radius": 1.002 * drive.pin_wheel.pin_radius}
+    found = analyse(with_fields(drive, loose), np.array([angle]), 100.0 * drive.load.torque)
+    (warning,) = [text for text in found.warnings if "parabola" in text]
+    told = re.search(r"the surfaces at wheel pin (\d+) depart from the parabola of the tables by ([\d.]+) %", warning)
+    pin, flank = int(told[1]), found.full.response.flank
+    profile, placement = found.model.discs[0].geometry.profile, found.model.discs[0].geometry.placement
+    width, theta = found.pressures.pins.half_width[0, pin], flank.parameter[0, pin]
+    origin, normal = profile.flank(np.array(theta)), profile.normal(np.array(theta))
+    ahead = 3.0 * width / np.abs(profile.flank_tangent(np.array(theta)))
+
+    def beside(place):
+        return (profile.flank(np.array(place)) - origin) * normal.conjugate()
+
+    radius, gaps = float(placement.wheel_pin_radii[pin]), []
+    for sense in (1.0, -1.0):
+        at = brentq(lambda place, sense=sense: beside(place).imag - sense * width, theta - ahead, theta + ahead)
+        gaps.append(radius - np.sqrt(radius**2 - width**2) - beside(at).real)
+    parabola = width**2 / (2.0 * flank.effective_radius[0, pin])
+    even, odd = 0.5 * (gaps[0] + gaps[1]) / parabola - 1.0, 0.5 * (gaps[0] - gaps[1]) / parabola
+    load = found.full.response.pin_load[0]
+    departure = 100.0 * max(abs(even), odd**2) * load[pin] / load.max()
+    assert float(told[2]) == pytest.approx(departure, rel=0.15)
 
 
 def test_grids_check_pins_where_a_ring_has_displaced_them(paper_cases):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ltca.analysis.tilted_fields import solve_tilted
+from ltca.analysis.tilted_fields import _pressed, solve_tilted
 from ltca.contact.contact_kind import ContactKinds
 from ltca.reading.drive_file import load_drive
 
@@ -42,3 +42,18 @@ def test_an_aligned_contact_has_the_pressure_of_hertz_in_the_middle(of_rollers):
     z = 0.5 * (patch.grid.y_edges[1:] + patch.grid.y_edges[:-1])
     middle = patch.pressure[:, np.argmin(np.abs(z))].max()
     assert middle == pytest.approx(hertz, rel=0.05)
+
+
+def test_what_yields_in_proportion_is_pressed_in_one_step():
+    """Newton's method by load and moment over half the length, whatever that length is: the second place is the answer."""
+    stiff, mixed, turning, half, asked = 3e5, 2e5, 8e6, 5.9, []
+
+    def press(approach, tilt):
+        asked.append((approach, tilt))
+        load, moment = stiff * approach + mixed * tilt, mixed * approach + turning * tilt
+        return np.array([load, moment, stiff, mixed, turning])
+
+    found = _pressed(press, 2000.0, 1500.0, half, (1e-3, 0.0))
+    exact = np.linalg.solve([[stiff, mixed], [mixed, turning]], [2000.0, 1500.0])
+    np.testing.assert_allclose(found, exact, rtol=1e-6)
+    np.testing.assert_allclose(asked[1], exact, rtol=1e-6)

@@ -10,7 +10,7 @@ import pytest
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.drive.engine_support import require
-from ltca.drive.pin_beams import _wind_up, shaft_pin_spring
+from ltca.drive.pin_beams import _energy_beside, _wind_up, shaft_pin_spring
 from ltca.errors import DriveError
 from ltca.geometry.placement import position_angles
 from ltca.page.derived import derived_rows
@@ -180,3 +180,30 @@ def test_the_lines_of_springs_in_shipped_files_are_those_of_their_beams():
     sleeved = load_drive("sleeved")
     (line,) = re.findall(r"(?m)^# stiffness = (\S+)", sleeved.text)
     assert float(line) == shaft_pin_spring(sleeved.cases["nominal"]).stiffness
+
+
+def test_a_disc_between_holes_flank_and_bearing_is_in_balance(vary):
+    """Energies by hand where shaft pins carry g sin: forces along lines through the pitch point, on all pins of one side.
+
+    Their moment about the centre of the disc is that of the holes; the bearing takes the moment on the wheel by e z_P.
+    """
+    drive = vary(
+        pin_wheel={"number_of_pins": 6, "pin_radius": 9.0},
+        disc={"number_of_teeth": 5, "equidistant_offset": 0.0, "shifting_offset": 0.0},
+    )
+    wheel, bearing, e = drive.pin_wheel, drive.crank_bearing, drive.crank.eccentricity
+    steel, length = 206_000.0 / (2.0 * (1.0 - 0.3**2)), drive.disc.thickness
+    on_holes = 0.25 * drive.number_of_holes * drive.pin_shaft.pin_circle_radius  # of g = 1 in the mean
+    pitch, energies = 6.0 * e, []
+    for phase in np.arange(8) / 8.0:
+        pin = wheel.pin_circle_radius * np.exp(2j * pi * (np.arange(6) + phase) / 6.0)
+        along = (pitch - pin) / np.abs(pitch - pin)
+        about_wheel, about_disc = ((along.conjugate() * (pin - at)).imag for at in (0.0, e))
+        pressed = pin.imag > 1e-9
+        force = np.where(pressed, np.abs(about_wheel), 0.0)
+        force *= on_holes / np.abs(np.sum(force * about_disc))
+        across = np.abs(np.sum(force * about_wheel)) / pitch
+        by_flank = np.sum(force**2) / (pi * steel * length / 10.0)
+        rollers = pi * steel * drive.roller_length / 10.0 * bearing.number_of_rollers / 8.0
+        energies.append(by_flank + across**2 / rollers)
+    assert _energy_beside(drive) == pytest.approx(np.mean(energies), rel=1e-9)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -184,3 +186,15 @@ def test_a_balance_that_does_not_converge_is_told(monkeypatch):
     force = np.ones((ORDERS.size + 1, 1), dtype=complex)
     with pytest.raises(ConvergenceError, match=r"no periodic motion found at 0\.31 rad/s of the crank"):
         system_of(mathieu(0.8)).respond(0.31, ORDERS, force)
+
+
+def test_a_lossy_spring_takes_power():
+    """One mass on k (1 + iη): x/F = 1/(k (1 + iη) − m ω² + i ω c), which lags behind the force; at order 0 it is 1/k."""
+    stiffness, loss, speed = 3.0, 0.2, 0.7
+    system = replace(system_of(np.full((POSITIONS, 1, 1), stiffness), damping_ratio=0.03), loss_factor=loss)
+    orders = np.array([0.0, 1.0, 2.0, 5.0])
+    found = system.compliance(speed, orders)[:, 0, 0]
+    omega = speed * orders[1:]
+    damped = 1j * omega * 2.0 * 0.03 * np.sqrt(stiffness)
+    np.testing.assert_allclose(found[1:], 1.0 / (stiffness * (1.0 + 1j * loss) - omega**2 + damped), rtol=1e-12)
+    assert found[0] == pytest.approx(1.0 / stiffness, rel=1e-12)

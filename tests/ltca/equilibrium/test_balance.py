@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.equilibrium.balance import lever_arms, solve_equilibrium
+from ltca.equilibrium.balance import _failure, lever_arms, solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
@@ -210,3 +211,22 @@ def test_contacts_are_those_of_their_positions(models, paper_cases):
     # the same pose from another start of the inner unknowns: stiffness 1e6 N/mm times round-off of 1e-11 mm
     np.testing.assert_allclose(found.response.pin_load, again.pin_load, atol=1e-5)
     np.testing.assert_allclose(found.response.rollers.outer_load, again.rollers.outer_load, atol=1e-5)
+
+
+def test_the_position_farthest_from_balance_is_named_by_its_own_load():
+    """2 N left of 10 N are more than 50 N of 100 kN: drives of a batch have loads of their own."""
+    load, residual = np.array([1e5, 10.0, 1e3]), np.array([50.0, 2.0, 1e-3])
+    search = SimpleNamespace(
+        history=[np.full(3, np.inf), residual],
+        angle=np.array([0.1, 0.2, 0.3]),
+        slipped=np.zeros(3, dtype=bool),
+        load=load,
+        moment=56.0 * load,
+        iterations=np.full(3, 30),
+        pose=np.zeros((3, 4)),
+        evaluate=lambda *_: None,
+        round_off=lambda rows, _: np.zeros(len(rows)),
+    )
+    told = _failure(search, np.arange(3))
+    assert str(told).startswith("no equilibrium at crank angle 0.2 rad (position 1 of 3, 3 unbalanced)")
+    assert "against a load of 10 N" in str(told)

@@ -12,10 +12,10 @@ from ltca.arrays import stack_drives
 from ltca.drive.deviations import PlacementErrors
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
-from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play
+from ltca.geometry.play import _Disc, free_play
 from ltca.geometry.rotation import unit
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -187,3 +187,23 @@ def test_light_loads_turn_askew_drives_as_far(loose, fields):
     """1 % or 0.005′ (`compare`): the loaded model has no points nearer to an end than 0.007 of the length."""
     found = compare(with_fields(loose, SLICES | fields), ANGLES[1:2])
     assert [one.outcome for one in found] == ["alike"], found
+
+
+def test_what_bounds_a_leaning_disc_by_arcs_comes_first(loose):
+    """Rollers and holes at both of their ends: wherever the disc moves, no gap is more than its tangent says, which may be kept.
+
+    Those of flanks, which come after them, are.
+    """
+    rows, random = np.arange(ANGLES.size), np.random.default_rng(2)
+    geometry = discs_of(with_fields(loose, SLICES | ASKEW))[0]
+    disc, here = _Disc(geometry, ANGLES, leans=True), np.zeros((ANGLES.size, geometry.coordinates.size))
+    gap, slope, arcs = disc.gaps(rows, here)
+    assert arcs == 2 * (loose.crank_bearing.number_of_rollers + loose.number_of_holes)
+    assert gap.shape[1] == arcs + 2 * loose.pin_wheel.number_of_pins
+    more = []
+    for _ in range(20):
+        pose = here.copy()
+        pose[:, [X, Y]] = random.uniform(-0.3, 0.3, (ANGLES.size, 2))
+        more.append(disc.gaps(rows, pose)[0] - gap - np.einsum("bij,bj->bi", slope, pose))
+    assert np.max(np.array(more)[..., :arcs]) < 1e-12
+    assert np.max(np.array(more)[..., arcs:]) > 1e-4

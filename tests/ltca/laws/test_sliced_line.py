@@ -212,3 +212,24 @@ def test_slices_much_narrower_than_the_contact_are_told():
     line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=65, relief=np.zeros((65, 4)))
     with pytest.raises(ConvergenceError, match=r"contact.slices = 65: .* choose at most \d+"):
         line.respond(np.array([0.05]), np.array([0.0]), np.array([100.0]))
+
+
+@pytest.mark.parametrize("overlap", [2e-7, 6.7e-7])
+def test_energy_less_a_wall_that_counts_twice(overlap):
+    """Loads and moments are slopes of the energy where the compliance of a sleeve's wall is subtracted, up to its bound."""
+    relief = 1e-5 * slice_heights(LENGTH, 9) ** 2
+    line = SlicedLine(length=LENGTH, contact_modulus=MODULUS, slices=9, relief=relief, sleeve=0.5, overlap=overlap)
+    radius, step = np.full(3, 6.0), 1e-6
+    approach, tilt = np.array([2e-3, 8e-3, 0.03]), np.array([0.0, 3e-4, 1e-3])
+
+    def slope(by_approach, by_tilt):
+        up, down = (
+            line.respond(approach + way * by_approach, tilt + way * by_tilt, radius, start=here.near)
+            for way in (1.0, -1.0)
+        )
+        return (line.energy(up, radius) - line.energy(down, radius)) / 2.0
+
+    here = line.respond(approach, tilt, radius)
+    np.testing.assert_allclose(slope(step, 0.0) / step, here.load, rtol=1e-6)
+    turn = step / LENGTH
+    np.testing.assert_allclose(slope(0.0, turn) / turn, here.moment, rtol=1e-6, atol=1e-6 * LENGTH * here.load.max())

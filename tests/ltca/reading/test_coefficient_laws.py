@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from ltca.contact.round_bodies import compressed_cylinder
+from ltca.contact.round_bodies import compressed_cylinder, held_ring_approach
 from ltca.geometry.boundary_stations import clustered_parameter
 from ltca.reading import coefficient_laws
 from ltca.reading.coefficient_laws import (
@@ -141,6 +141,17 @@ def test_what_a_file_states_of_itself_is_bounded(name):
     assert all(check.passed for check in check_coefficients(data))
 
 
+def test_what_a_race_is_off_the_held_ring_counts_by_the_largest_approach():
+    data, inner, outer = made(), 10.0, 19.5
+    angle, nu = 2.0 * np.pi * np.arange(8) / 8, MATERIALS["race"][1]
+    data["race_half_width"] = 0.15
+    ring = held_ring_approach(inner, outer, 0.15, 3.0 - 4.0 * nu, angle)
+    wrong = ring + 1e-3 * np.abs(ring).max() * (np.arange(8) == 3)
+    for values, off in ((ring, 0.0), (wrong, 1e-3)):
+        data["race_approach"] = "lag", UNIT["race"] * values
+        assert coefficient_laws._off_held_ring(data, "race", inner, outer) == pytest.approx(off, rel=1e-9, abs=1e-12)
+
+
 def test_even_pressure_is_the_arc_between_stations():
     """A circle of 20 mm in 24 parts; boundaries of another size have their own."""
     data = made()
@@ -202,6 +213,16 @@ def test_what_stations_miss_of_a_function_with_a_pole_a_wall_away():
     points = one["station_x"].values + 1j * one["station_y"].values
     assert missed_between_stations(one["station_boundary"].values, points)[0] == 0.0
     assert 2.0 / np.expm1(2.0 * np.pi / LARGEST_DISTANCE) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_thickness_of_a_wall_whose_stations_do_not_face_each_other():
+    """The wall is thinner than points along it are apart: its thickness is the distance to the line between them."""
+    thickness, angle = 0.1, 2.0 * np.pi * np.arange(40) / 40
+    turned = np.pi / (40 * 12)  # half of a twelfth of a station
+    outer, inner = RADIUS * np.exp(1j * angle), (RADIUS - thickness) * np.exp(1j * (angle + turned))
+    _, wall, _ = missed_between_stations(np.repeat([0, 1], 40), np.concatenate((outer, inner)))
+    sagitta = RADIUS * (1.0 - np.cos(turned))  # of the outer chords, towards the inner points
+    assert wall == pytest.approx(thickness - sagitta, rel=1e-6)
 
 
 def test_coefficients_of_a_thin_wall_are_not_refused_for_its_bending():

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 
+import numpy as np
 import pytest
 
 from ltca.errors import DriveError
+from ltca.reading.contradictions import Cause
 from ltca.reading.drive_file import build_drive, parse_drive, shipped_drive
 
 BASE = shipped_drive().partition("[[case]]")[0]
@@ -247,3 +249,10 @@ def test_no_count_is_no_count(value):
         parse_drive(BASE.replace("number_of_discs = 1", f"number_of_discs = {value}"))
     two = parse_drive(BASE.replace("number_of_discs = 1", "number_of_discs = 2.0")).cases["nominal"]
     assert two.disc.number_of_discs == 2
+
+
+def test_a_bound_of_half_the_value_is_as_far_as_one_of_twice():
+    """Bounds are compared by ratios, of lengths of any size."""
+    for value in (0.25, 4.0, 60.0):
+        for bound in (0.5 * value, 2.0 * value):
+            assert Cause(path="crank.eccentricity", value=value, bound=bound).distance == pytest.approx(np.log(2.0))

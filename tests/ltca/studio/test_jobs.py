@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import time
+from importlib.resources import files
 
 import pytest
 
@@ -36,6 +37,14 @@ def test_known_jobs_are_known_words(asked, expected):
 def test_anything_else_is_refused(asked):
     with pytest.raises(DriveError, match="must be"):
         job_words(asked)
+
+
+def test_as_many_samples_as_the_page_offers():
+    page = (files("ltca") / "studio" / "templates" / "studio.html").read_text(encoding="utf-8")
+    most = int(re.search(r'id="samples" [^>]*max="(\d+)"', page)[1])
+    assert job_words({"kind": "tolerance", "samples": most})[-1] == str(most)
+    with pytest.raises(DriveError, match=f"must be a whole number from 1 to {most}$"):
+        job_words({"kind": "tolerance", "samples": most + 1})
 
 
 def test_what_is_offered_is_what_the_command_has():

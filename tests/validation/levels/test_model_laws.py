@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from ltca.compliance.coefficients import without_coupling
+from validation.levels import model_laws
 from validation.levels.model_laws import pair_approaches, widen
 
 LOAD = np.where(np.arange(14) < 5, 1000.0, 0.0)
@@ -66,3 +68,16 @@ def test_the_body_part_is_that_of_the_coefficients(made):
     first, second = (pair_approaches(drive, own, "half-space", 0.5, LOAD) for own in (coefficients, more))
     np.testing.assert_allclose((second - first)[:5], 2e-6 * 1000.0, rtol=1e-9)
     np.testing.assert_array_equal(second[5:], 0.0)
+
+
+def test_finite_lengths_tend_to_plane_strain(made, monkeypatch):
+    """Of half-spaces with bodies that do not couple: the rows of the level keep their limits, whatever loads the pins carry."""
+    drive, _ = made
+    response = SimpleNamespace(pin_load=LOAD[None])
+    monkeypatch.setattr(
+        model_laws, "analyse", lambda *_, **__: SimpleNamespace(full=SimpleNamespace(response=response))
+    )
+    *gaps, falls = model_laws._wide(drive, "CS-6", np.array([0.5]), made[1])
+    assert [abs(row.value) for row in gaps] == sorted((abs(row.value) for row in gaps), reverse=True)
+    assert abs(gaps[-1].value) < gaps[-1].limit
+    assert falls.value > 0.0

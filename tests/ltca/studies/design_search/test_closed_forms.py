@@ -15,9 +15,12 @@ from ltca.geometry.placement import position_angles
 from ltca.studies.design_search.closed_forms import (
     Setting,
     closed_forms,
+    disc_shares,
     flank_values,
+    inner_values,
     lives_by_loads,
     shape_values,
+    wheel_torque,
 )
 from ltca.studies.design_search.demands import find_demands, written_limits
 from ltca.studies.design_search.enumeration import _different, enumerate_candidates, teeth
@@ -144,6 +147,71 @@ def test_pins_without_clearance_rub_off_what_the_pitch_point_says(pin):
     told = float(flank_values(Sizes.of_rows([ROW | WITHOUT_OFFSETS | {"pin_radius": pin}]), setting)["flank_loss"][0])
     # sums over 56 places: the kinks of sin at both ends leave (2π/56)²/12, 0.1 %
     assert told == pytest.approx(4.0 * 0.05 * 377_300.0 * (88.0 - pin) / (np.pi * 4.0 * 14.0**2), rel=2e-3)
+
+
+def test_what_bearings_and_seals_take_by_hand():
+    """1/η − 1 is what is lost by a radian of the crank, by T/z_P: f F (r_i + r_BR), f r T/(e z_P), and i T₀/z_P."""
+    whole = 377_300.0 / 14.0
+
+    def lost(lines):
+        told = forms(PAPER + f"[friction]\n{lines}\n" + STEEL)
+        return 1.0 / told["mean_efficiency"] - 1.0, told["bearing_load"]
+
+    part, force = lost("roller = 0.002")
+    assert part == pytest.approx(0.002 * force * (29.5 - 10.0 + 5.0) / whole, rel=1e-9)
+    part, _ = lost("support_bearing = 0.003\nsupport_bearing_radius = 12.0")
+    assert part == pytest.approx(0.003 * 12.0 * whole / 4.0 / whole, rel=1e-9)
+    part, _ = lost("no_load_torque = 60.0")
+    assert part == pytest.approx(60.0 / whole, rel=1e-9)
+
+
+def test_spare_lengths_are_counted_by_a_fiftieth_of_the_drive():
+    for diameter in (190.0, 95.0):
+        demands = find_demands(parse_requirements(PAPER.replace("190.0", f"{diameter}") + STEEL))
+        assert {one.scale for one in demands} == {diameter / 50.0}
+    (wall,) = [one for one in demands if one.name == "wall"]
+    assert wall.margin(wall.value + 1.9) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_bearings_of_several_cranks_carry_most_where_both_forces_point_alike():
+    """One goes round with the crank, the other stands: over a turn the largest is their sum, sampled every 30°."""
+    text = PAPER.replace("discs = 1", 'kind = "rv"\ncranks = 3').replace("shaft_pin_stiffness = 1.0e6", "")
+    text = text.replace("pin_hole_clearance = 0.0\n", "").replace('held = "pin-shaft"\n', "")
+    row = ROW | {"stage": 1.0, "holes": 3.0, "discs": 2.0}
+    without_shaft_pins = STEEL.replace('shaft_pin = "100Cr6"', "")
+    sizes, setting = Sizes.of_rows([row]), Setting.of(parse_requirements(text + without_shaft_pins))
+    radial = float(flank_values(sizes, setting)["radial"][0])
+    told = inner_values(sizes, setting, flank_values(sizes, setting))
+    torque = float(wheel_torque(sizes, setting)[0]) / 2.0
+    standing = abs(complex(-radial, torque / (4.0 * 14.0))) / 3.0
+    around = torque * 13.0 / 14.0 / (3.0 * 56.0)
+    assert (standing + around) * np.cos(np.pi / 12.0) <= told["bearing_load"][0] <= standing + around
+    # What rolls takes goes with the mean force by the power 10/3 over the whole turn.
+    text += "[friction]\nroller = 0.002\n"
+    sizes, setting = Sizes.of_rows([row]), Setting.of(parse_requirements(text + without_shaft_pins))
+    lost = 1.0 / float(inner_values(sizes, setting, flank_values(sizes, setting))["mean_efficiency"][0]) - 1.0
+    turn = np.exp(2j * np.pi * np.arange(720) / 720.0)
+    force = np.abs(complex(-radial, torque / (4.0 * 14.0)) / 3.0 + around * turn)
+    mean = np.mean(force ** (10.0 / 3.0)) ** 0.3
+    assert lost * torque / 14.0 == pytest.approx(0.002 * 3.0 * mean * (29.5 - 10.0 + 5.0), rel=1e-3)
+
+
+@pytest.mark.parametrize("discs", [2, 3])
+def test_shares_of_discs_on_pins_tied_by_a_ring_that_turns_on(discs):
+    """Pins clamped in the flange and guided at their tips, by virtual work: M(s) = (x − s)₊ − x²/2L of a unit force at x."""
+    row = ROW | {"discs": float(discs), "thickness": 8.0}
+    setting = Setting.of(parse_requirements(PAPER.replace("shaft_pin_stiffness = 1.0e6", "disc_gap = 1.0") + STEEL))
+    sizes, alone, turned = Sizes.of_rows([row]), np.array([2e-10]), np.array([4e-4])
+    span = float(stack_length(sizes, 1.0)[0]) + 2.0
+    places = 0.5 * span + 9.0 * (np.arange(discs) - 0.5 * (discs - 1))
+    s = span * (np.arange(20_000) + 0.5) / 20_000
+    moments = np.array([np.maximum(x - s, 0.0) - x**2 / (2.0 * span) for x in places])
+    rigidity = setting.pin_modulus * np.pi * (2.0 * 10.075) ** 4 / 64.0
+    bent = moments @ moments.T * (span / 20_000) / rigidity
+    torque = np.linalg.solve(bent * turned[0] + alone[0] * np.eye(discs), np.ones(discs))
+    expected = discs * torque.min() / torque.sum()
+    assert 0.05 < expected < 0.99
+    assert disc_shares(sizes, setting, alone, turned)[0] == pytest.approx(expected, rel=1e-6)
 
 
 def test_sizes_between_two_have_one_ratio_to_both():
