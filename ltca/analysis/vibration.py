@@ -272,7 +272,7 @@ def vibration(
     basis, turned = free_coordinates(row, lever), motion.turned(angles)
     rigid = None if holds_input(drive) else motion.rigid
     bodies = [moving_bodies(motion, masses, float(angle)) for angle in angles]
-    mass = np.array([mass_matrix(each, motion.size) for each in bodies])
+    mass = np.array([mass_matrix(each) for each in bodies])
     frequency, found, start = [], list[Modes](), None
     for part in parts[::-1]:
         balanced = solve_at_output(model, [warm], angles, part * warm.load.torque, start)

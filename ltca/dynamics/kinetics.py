@@ -43,7 +43,8 @@ from ltca.dynamics.masses import (
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_springs
 from ltca.errors import DriveError
-from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X, Y
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X
+from ltca.geometry.placement import position_angles
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
 OF_SHAFT = (SHAFT_PINS, SLEEVES[SHAFT_PINS], POSTS)
@@ -57,35 +58,32 @@ PLACES = 4
 class Motion:
     """Coordinates of a vibrating drive: those of the pose, then the crank angle, the sun, the twist of the carrier.
 
-    Attributes
-    ----------
-    drive : Drive
-        Warm.
-    pose : Coordinates
-        Of the pose.
-    mesh : StageMesh or None
-        Teeth of the first stage.
-    mesh_compliance : float
-        Rotation of the cranks against the sun by the moment of all of them, rad/(N·mm); 0 where it is rigid.
-    mesh_by_pose : array, shape (pose,)
-        The same rotation by the coordinates of the pose, rad by mm or rad.
+    The cranks rotate against the sun by `mesh_compliance` times the moment of all of them, rad/(N·mm), 0 of rigid teeth, and by
+    the coordinates of the pose, rad by mm or rad, shape (pose,). The carrier resists its twist by `twist_stiffness`, N·mm/rad, 0
+    of a rigid one.
     """
 
     drive: Drive
     pose: Coordinates
-    mesh: StageMesh | None
     mesh_compliance: float
     mesh_by_pose: FloatArray
+    twist_stiffness: float
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Motion:
         """Return the coordinates of a warm drive; with contacts in slices leans of its parts are among them."""
-        pose, mesh = Coordinates.of_drive(drive), StageMesh.of_drive(drive)
+        pose, mesh, carrier = Coordinates.of_drive(drive), StageMesh.of_drive(drive), drive.carrier
         compliance, by_pose = 0.0, np.zeros(pose.size)
         if mesh is not None:
             # The load drives the cranks against the teeth in this sense.
             compliance, by_pose = mesh.together(float(drive.driving_sign))
-        return cls(drive=drive, pose=pose, mesh=mesh, mesh_compliance=compliance, mesh_by_pose=by_pose)
+        return cls(
+            drive=drive,
+            pose=pose,
+            mesh_compliance=compliance,
+            mesh_by_pose=by_pose,
+            twist_stiffness=0.0 if carrier is None else carrier.stiffness_torsion or 0.0,
+        )
 
     @property
     def crank(self) -> int:
@@ -105,32 +103,25 @@ class Motion:
     @property
     def twist(self) -> int | None:
         """Place of the twist of the carrier; None where it is rigid."""
-        carrier = self.drive.carrier
-        if carrier is None or carrier.stiffness_torsion is None:
-            return None
-        return self.pose.size + 1 + bool(self.mesh_compliance)
+        return self.pose.size + 1 + bool(self.mesh_compliance) if self.twist_stiffness else None
 
     @property
     def springs(self) -> FloatArray:
         """Stiffness of the carrier against its twist, shape (n, n)."""
-        found, carrier = np.zeros((self.size, self.size)), self.drive.carrier
-        if self.twist is not None and carrier is not None:
-            found[self.twist, self.twist] = carrier.stiffness_torsion or 0.0
-        return found
+        return np.diag(self.twist_stiffness * self.unit(self.twist))
 
     @property
     def size(self) -> int:
         """Number of coordinates."""
-        return self.pose.size + 1 + bool(self.mesh_compliance) + (self.twist is not None)
+        return self.pose.size + 1 + bool(self.mesh_compliance) + bool(self.twist_stiffness)
 
     @property
     def light_leans(self) -> NDArray[np.intp]:
         """Places of the leans of cranks at the discs and of the wheel, which have no mass."""
         pose = self.pose
-        first = pose.own - 2 * (pose.cranks + 1) * pose.leans
-        each = (pose.own * np.arange(pose.discs)[:, None] + np.arange(first, pose.lean_place.start)).ravel()
-        wheel = np.arange(*pose.wheel_lean_place.indices(pose.size))
-        return np.concatenate((each, wheel)).astype(np.intp)
+        last = pose.lean_place.start
+        of_cranks = np.arange(last - 2 * pose.cranks * pose.leans, last)
+        return np.r_[(pose.own * np.arange(pose.discs)[:, None] + of_cranks).ravel(), pose.wheel_lean_place]
 
     def unit(self, place: int | None) -> FloatArray:
         """Return the row of one coordinate; zeros of none."""
@@ -138,6 +129,10 @@ class Motion:
         if place is not None:
             row[place] = 1.0
         return row
+
+    def displacement(self, x: int) -> ComplexArray:
+        """Return the row of x + iy of a part whose x is a coordinate before its y."""
+        return np.asarray(self.unit(x) + 1j * self.unit(x + 1))
 
     @property
     def wheel_turns(self) -> FloatArray:
@@ -152,10 +147,7 @@ class Motion:
     @property
     def wheel_moves(self) -> ComplexArray:
         """Row of the displacement of the wheel against the pin shaft, x + iy."""
-        row = np.zeros(self.size, dtype=complex)
-        if self.pose.wheel:
-            row[self.pose.wheel_place] = 1.0, 1j
-        return row
+        return self.displacement(self.pose.wheel_place.start) if self.pose.wheel else np.zeros(self.size, dtype=complex)
 
     @property
     def frame_moves(self) -> ComplexArray:
@@ -165,48 +157,31 @@ class Motion:
     @property
     def input_turns(self) -> FloatArray:
         """Row of the rotation of the input."""
-        stage = self.drive.first_stage_ratio
-        if stage is None:
-            return self.frame_turns + self.unit(self.crank)
-        sun = self.unit(self.crank if self.sun is None else self.sun)
-        if self.sun is None:
-            sun[: self.pose.size] += self.mesh_by_pose
-        return self.frame_turns - stage * sun
+        stage, turns = self.drive.first_stage_ratio, self.unit(self.crank if self.sun is None else self.sun)
+        if self.sun is None:  # of rigid teeth, if there are any
+            turns[: self.pose.size] += self.mesh_by_pose
+        return self.frame_turns + (turns if stage is None else -stage * turns)
 
     @property
     def output_turns(self) -> FloatArray:
         """Row of the rotation of the output."""
-        if self.drive.wheel_is_held:
-            return self.frame_turns + self.unit(self.twist)
-        return self.frame_turns + self.wheel_turns
+        return self.frame_turns + (self.unit(self.twist) if self.drive.wheel_is_held else self.wheel_turns)
 
     @property
     def output_moves(self) -> ComplexArray:
         """Row of the displacement of the output, x + iy."""
-        return self.frame_moves + (0.0 if self.drive.wheel_is_held else self.wheel_moves)
+        return -self.wheel_moves if self.drive.wheel_is_held else self.wheel_moves
 
     def turned(self, crank_angle: FloatArray) -> FloatArray:
-        """Return the matrices that take coordinates in the frame that turns with the crank to those at rest, shape
-        (positions, n, n).
-
-        Parameters
-        ----------
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        """
-        found = np.tile(np.eye(self.size), (crank_angle.size, 1, 1))
-        cosine, sine = np.cos(crank_angle), np.sin(crank_angle)
-        for x in self.pose.displacements:
-            found[:, x, x] = found[:, x + 1, x + 1] = cosine
-            found[:, x, x + 1], found[:, x + 1, x] = -sine, sine
-        return found
+        """Return the matrices from coordinates in the frame that turns with the crank to those at rest, (positions, n, n)."""
+        angle, spin = crank_angle[:, None, None], self.spin
+        return np.asarray(np.eye(self.size) + np.sin(angle) * spin + (1.0 - np.cos(angle)) * (spin @ spin))
 
     @property
     def spin(self) -> FloatArray:
         """Derivative of `turned` by the crank angle, in the frame that turns, shape (n, n)."""
-        found = np.zeros((self.size, self.size))
-        for x in self.pose.displacements:
-            found[x, x + 1], found[x + 1, x] = -1.0, 1.0
+        found, x = np.zeros((self.size, self.size)), self.pose.displacements
+        found[x, x + 1], found[x + 1, x] = -1.0, 1.0
         return found
 
     @property
@@ -217,21 +192,10 @@ class Motion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """A mass, or a moment of inertia, with the row of its velocity.
+    """A mass, t, or where it `turns` a moment of inertia about z, t·mm², with the row of its velocity by rates of coordinates.
 
-    Attributes
-    ----------
-    name : str
-        What moves, for words: ``disc 0``, ``output``, …
-    turns : bool
-        Whether it is a moment of inertia about z.
-    size : float
-        t, or t·mm².
-    row : array, shape (coordinates,)
-        Velocity x + iy, rotation, or one direction of a lean, by the rates of the coordinates.
-    across : array, shape (coordinates,), or None
-        Of a moment of inertia about a line in the plane, by the lean in one direction, what a frame that turns by 1 rad adds to
-        that: the lean across. None of others.
+    The row is that of x + iy, of a rotation, or of a lean in one direction. Of a moment of inertia about a line in the plane
+    `across` is the row of the lean across, which a frame that turns by 1 rad adds; None of others.
     """
 
     name: str
@@ -250,11 +214,6 @@ class Body:
         """Velocity that a frame which turns by 1 rad adds, by the displacements of the row."""
         return 1j * self.row if self.across is None else self.across
 
-    @property
-    def matrix(self) -> FloatArray:
-        """Its part of the mass matrix."""
-        return np.asarray(self.size * np.outer(self.row.conjugate(), self.row).real)
-
 
 def require_masses(masses: DriveMasses) -> DriveMasses:
     """Return the masses themselves; DriveError with every density that is not given."""
@@ -265,17 +224,7 @@ def require_masses(masses: DriveMasses) -> DriveMasses:
 
 
 def moving_bodies(motion: Motion, masses: DriveMasses, crank_angle: float) -> tuple[Body, ...]:
-    """Return every body that moves, with its velocity at a crank angle; those that stand are left out.
-
-    Parameters
-    ----------
-    motion : Motion
-        Coordinates.
-    masses : DriveMasses
-        Of the same drive, every density known.
-    crank_angle : float
-        φ_C, rad.
-    """
+    """Return every body that moves, with its velocity at a crank angle, rad; those that stand are left out."""
     require_masses(masses)
     bodies = (
         *_discs_and_rollers(motion, masses, crank_angle),
@@ -286,24 +235,17 @@ def moving_bodies(motion: Motion, masses: DriveMasses, crank_angle: float) -> tu
     return tuple(body for body in bodies if body.size and np.any(body.row))
 
 
-def mass_matrix(bodies: Sequence[Body], size: int) -> FloatArray:
-    """Return the mass matrix of bodies, t, t·mm, t·mm², shape (size, size)."""
-    total = np.zeros((size, size))
-    for body in bodies:
-        total += body.matrix
-    return total
+def mass_matrix(bodies: Sequence[Body]) -> FloatArray:
+    """Return the mass matrix of bodies, t, t·mm, t·mm², shape (coordinates, coordinates)."""
+    rows, sizes = np.array([body.row for body in bodies]), np.array([body.size for body in bodies])
+    return np.asarray((rows.conj().T @ (sizes[:, None] * rows)).real)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReflectedInertia:
-    """Moment of inertia of all parts that move, as rigid ones, t·mm².
+    """Moment of inertia of all parts that move, as rigid ones, referred to input and output, t·mm².
 
-    Attributes
-    ----------
-    at_input, at_output : float
-        Of the parts that the file describes and the given cranks, referred to the input and to the output.
-    given_input, given_output : float
-        Given inertias in front of and behind the drive, each at its own place; 0 where there is none.
+    Given inertias in front of the drive and behind it are apart, each at its own place; 0 where there is none.
     """
 
     at_input: float
@@ -313,43 +255,36 @@ class ReflectedInertia:
 
 
 def reflected_inertia(drive: Drive, masses: DriveMasses | None = None) -> ReflectedInertia | None:
-    """Return the inertia of a drive at its input and output, mean over a turn; None where a density is not known.
-
-    Parameters
-    ----------
-    drive : Drive
-        In one disc or several.
-    masses : DriveMasses, optional
-        Of this drive, where they are known.
-    """
+    """Return the inertia of a drive at its input and output, mean over a turn; None where a density is not known."""
     masses = drive_masses(drive) if masses is None else masses
     if masses.without_density:
         return None
-    motion, energies = Motion.of_drive(_plane(masses.drive)), []
-    for angle in 2.0 * np.pi * np.arange(PLACES) / PLACES:
-        own = [b for b in moving_bodies(motion, masses, float(angle)) if b.name not in (INPUT, OUTPUT)]
-        energies.append(motion.rigid @ mass_matrix(own, motion.size) @ motion.rigid)
+    # Slices change nothing of rigid motions.
+    motion = Motion.of_drive(replace(masses.drive, contact=replace(masses.drive.contact, slices=1)))
+    energies = []
+    for angle in position_angles(PLACES).tolist():
+        own = [body for body in moving_bodies(motion, masses, angle) if body.name not in (INPUT, OUTPUT)]
+        energies.append(motion.rigid @ mass_matrix(own) @ motion.rigid)
     given, mean = drive.inertia, float(np.mean(energies))
     return ReflectedInertia(
         at_input=mean / float(motion.input_turns @ motion.rigid) ** 2,
         at_output=mean / float(motion.output_turns @ motion.rigid) ** 2,
-        given_input=INERTIA * ((given.input if given is not None else None) or 0.0),
-        given_output=INERTIA * ((given.output if given is not None else None) or 0.0),
+        given_input=0.0 if given is None else INERTIA * (given.input or 0.0),
+        given_output=0.0 if given is None else INERTIA * (given.output or 0.0),
     )
 
 
-def _plane(drive: Drive) -> Drive:
-    """The drive without slices, which change nothing of rigid motions."""
-    return drive if drive.contact.slices == 1 else replace(drive, contact=replace(drive.contact, slices=1))
+def _rigid(
+    motion: Motion, name: str, mass: float, inertia: float, place: complex, moves: ComplexArray, turns: FloatArray
+) -> Iterator[Body]:
+    """Mass and inertia of a part that stands at a place and moves by rows in the frame of the pin shaft."""
+    row = np.asarray(motion.frame_moves + 1j * motion.frame_turns * place + moves)
+    yield Body(name=name, turns=False, size=mass, row=row)
+    yield _turning(motion, name, inertia, turns)
 
 
-def _at(motion: Motion, place: complex, row: ComplexArray) -> ComplexArray:
-    """Velocity in the frame of the held member of what stands at a place and moves by a row in that of the pin shaft."""
-    return np.asarray(motion.frame_moves + 1j * motion.frame_turns * place + row)
-
-
-def _turning(motion: Motion, row: FloatArray) -> ComplexArray:
-    return np.asarray(motion.frame_turns + row, dtype=complex)
+def _turning(motion: Motion, name: str, inertia: float, turns: FloatArray) -> Body:
+    return Body(name=name, turns=True, size=inertia, row=(motion.frame_turns + turns).astype(complex))
 
 
 def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]:
@@ -358,26 +293,19 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
         own, at = pose.columns(number), np.array([angle])
         start, stands = complex(place.race_centre(np.zeros(1))[0]), complex(place.race_centre(at)[0])
         middle = disc.place - start  # from the origin of the disc, which does not turn
-        moves = motion.unit(int(own[X])) + 1j * motion.unit(int(own[Y]))
         turns = motion.unit(int(own[DISC_ROTATION]))
-        nominal = complex(place.race_velocity(at)[0]) * crank
-        name = f"disc {number}"
-        row = _at(motion, stands + middle, moves + nominal + 1j * middle * turns)
-        yield Body(name=name, turns=False, size=disc.mass, row=row)
-        yield Body(name=name, turns=True, size=disc.about_own_axis, row=_turning(motion, turns))
+        moves = motion.displacement(int(own[X])) + complex(place.race_velocity(at)[0]) * crank
+        row = moves + 1j * middle * turns
+        yield from _rigid(motion, f"disc {number}", disc.mass, disc.about_own_axis, stands + middle, row, turns)
         yield from _leaning(motion, disc, number)
-        rollers = sum(solid.mass for solid in masses.of(ROLLERS) if solid.disc == number)
-        mass, centres = rollers / place.cranks, place.race_centres(at)[0]
+        mass = sum(solid.mass for solid in masses.of(ROLLERS) if solid.disc == number) / place.cranks
         radius = float(np.mean(place.roller_radii))
         orbit, cage = bearing.inner_race_radius + radius, float(place.cage_speed)
-        for bearing_number, centre in enumerate(centres.tolist()):
-            carried = _eccentric_velocity(motion, masses, number, bearing_number, angle)
-            bore = moves + nominal + 1j * complex(place.bore_centres[bearing_number]) * turns
-            row = _at(motion, centre, 0.5 * (bore + carried))
-            yield Body(name=ROLLERS, turns=False, size=mass, row=row)
-            yield Body(name=ROLLERS, turns=True, size=mass * orbit**2, row=_turning(motion, cage * crank))
-            spin = _turning(motion, -cage * orbit / radius * crank)
-            yield Body(name=ROLLERS, turns=True, size=0.5 * mass * radius**2, row=spin)
+        for bore, (stands_off, centre) in enumerate(zip(place.bore_centres, place.race_centres(at)[0], strict=True)):
+            carried = _eccentric_moves(motion, masses, number, bore, angle)
+            row = 0.5 * (moves + 1j * complex(stands_off) * turns + carried)
+            yield from _rigid(motion, ROLLERS, mass, mass * orbit**2, complex(centre), row, cage * crank)
+            yield _turning(motion, ROLLERS, 0.5 * mass * radius**2, -cage * orbit / radius * crank)
 
 
 def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
@@ -385,49 +313,43 @@ def _leaning(motion: Motion, disc: Solid, number: int) -> Iterator[Body]:
     if not motion.pose.leans:
         return
     tensor = disc.inertia
-    own = motion.pose.columns(number)[motion.pose.lean_place]
+    along, beside = (motion.unit(int(x)) for x in motion.pose.columns(number)[motion.pose.lean_place])
     # A lean along x turns the disc about y.
-    by_lean = np.array([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
-    for size, direction in zip(*np.linalg.eigh(by_lean), strict=True):
-        along, beside = motion.unit(int(own[0])), motion.unit(int(own[1]))
-        row, across = (first * along + second * beside for first, second in (direction, (direction[1], -direction[0])))
-        yield Body(
-            name=f"disc {number}", turns=False, size=float(size), row=row.astype(complex), across=across.astype(complex)
-        )
+    sizes, directions = np.linalg.eigh([[tensor[1, 1], -tensor[0, 1]], [-tensor[0, 1], tensor[0, 0]]])
+    for size, (x, y) in zip(sizes.tolist(), directions.T.tolist(), strict=True):
+        row, across = (x * along + y * beside).astype(complex), (y * along - x * beside).astype(complex)
+        yield Body(name=f"disc {number}", turns=False, size=size, row=row, across=across)
 
 
-def _eccentric_velocity(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:
+def _eccentric_moves(motion: Motion, masses: DriveMasses, disc: int, crank: int, angle: float) -> ComplexArray:
     """Velocity of the centre of an eccentric in the frame of the pin shaft."""
-    place, own = masses.places[disc], motion.pose.columns(disc)
+    place = masses.places[disc]
     arm = complex((place.eccentricity * place.eccentric_directions(np.array([angle]))[0])[crank])
-    row = 1j * arm * (motion.unit(motion.crank) + _twist_of(motion, disc, crank))
-    if motion.pose.cranks:
-        x = int(own[motion.pose.crank(crank)])
-        row = row + motion.unit(x) + 1j * motion.unit(x + 1)
-    return np.asarray(row)
+    return 1j * arm * _crank_turns(motion, disc, crank) + _crank_moves(motion, disc, crank)
 
 
-def _twist_of(motion: Motion, disc: int, crank: int) -> FloatArray:
-    """Row of the angle by which an eccentric is ahead of its crank."""
-    places = motion.pose.twist_places
-    return motion.unit(int(motion.pose.columns(disc)[places[crank]]) if places else None)
+def _crank_turns(motion: Motion, disc: int, crank: int) -> FloatArray:
+    """Row of the rotation of a crank at a disc, twisted."""
+    row, places = motion.unit(motion.crank), motion.pose.twist_places
+    return row + motion.unit(int(motion.pose.columns(disc)[places[crank]])) if places else row
+
+
+def _crank_moves(motion: Motion, disc: int, crank: int) -> ComplexArray:
+    """Row of the displacement of the axis of a crank at a disc."""
+    if not motion.pose.cranks:
+        return np.zeros(motion.size, dtype=complex)
+    return motion.displacement(int(motion.pose.columns(disc)[motion.pose.crank(crank)]))
 
 
 def _cranks(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]:
     """Eccentrics and shafts; where mass or inertia of a crank is given, that, by equal parts at the discs."""
-    drive, given, discs = motion.drive, motion.drive.inertia, motion.pose.discs
-    number = drive.crank.number
+    given, discs, number = motion.drive.inertia, motion.pose.discs, motion.drive.crank.number
     if given is not None and (given.crank is not None or given.crank_mass is not None):
         mass, inertia = masses.mass_of(CRANKS) / (number * discs), masses.crank_inertia / discs
         for disc, place in enumerate(masses.places):
             for crank, axis in enumerate(place.crank_axes.tolist()):
-                row = np.zeros(motion.size, dtype=complex)
-                if motion.pose.cranks:
-                    x = int(motion.pose.columns(disc)[motion.pose.crank(crank)])
-                    row = motion.unit(x) + 1j * motion.unit(x + 1)
-                yield Body(name=CRANKS, turns=False, size=mass, row=_at(motion, axis, row))
-                turns = motion.unit(motion.crank) + _twist_of(motion, disc, crank)
-                yield Body(name=CRANKS, turns=True, size=inertia, row=_turning(motion, turns))
+                moves, turns = _crank_moves(motion, disc, crank), _crank_turns(motion, disc, crank)
+                yield from _rigid(motion, CRANKS, mass, inertia, axis, moves, turns)
         return
     for solid in masses.of(CRANKS):
         disc, crank = solid.disc, solid.crank
@@ -435,59 +357,37 @@ def _cranks(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]
             yield from _shaft(motion, solid)
             continue
         centre = complex(masses.places[disc].race_centres(np.array([angle]))[0, crank])
-        row = _at(motion, centre, _eccentric_velocity(motion, masses, disc, crank, angle))
-        yield Body(name=CRANKS, turns=False, size=solid.mass, row=row)
-        turns = motion.unit(motion.crank) + _twist_of(motion, disc, crank)
-        yield Body(name=CRANKS, turns=True, size=solid.about_own_axis, row=_turning(motion, turns))
+        moves, turns = _eccentric_moves(motion, masses, disc, crank, angle), _crank_turns(motion, disc, crank)
+        yield from _rigid(motion, CRANKS, solid.mass, solid.about_own_axis, centre, moves, turns)
 
 
 def _shaft(motion: Motion, solid: Solid) -> Iterator[Body]:
-    """A piece of a shaft beside its eccentrics, which bends with them."""
-    for height, weight in zip(solid.heights.tolist(), solid.weights.tolist(), strict=True):
-        mass = solid.mass * weight / float(solid.weights.sum())
-        yield Body(
-            name=CRANKS, turns=False, size=mass, row=_at(motion, solid.place, _bent(motion, solid.crank, height))
-        )
-    turns = _turning(motion, motion.unit(motion.crank))
-    yield Body(name=CRANKS, turns=True, size=solid.about_own_axis, row=turns)
-
-
-def _bent(motion: Motion, crank: int, height: float) -> ComplexArray:
-    """Displacement of a shaft at a height by those at the discs, its bearings where they stand."""
-    drive, row = motion.drive, np.zeros(motion.size, dtype=complex)
-    support = drive.crank.support
-    if support is None:
-        return row
+    """A piece of a shaft beside its eccentrics, which bends with them while its bearings stand."""
+    drive, support = motion.drive, motion.drive.crank.support
+    assert support is not None
     planes, modulus = drive.disc.disc_planes, drive.materials.crankshaft.youngs_modulus
-    springs = crank_springs(drive)
-    whole = shaft_flexibility([*planes, height], support.positions, springs, support.diameter, modulus, ())
-    shape = np.linalg.solve(whole[:-1, :-1], whole[:-1, -1])
-    for disc, part in enumerate(np.atleast_1d(shape).tolist()):
-        x = int(motion.pose.columns(disc)[motion.pose.crank(crank)])
-        row[x], row[x + 1] = part, 1j * part
-    return row
+    turns, parts = motion.unit(motion.crank), solid.weights / solid.weights.sum()
+    for height, part in zip(solid.heights.tolist(), parts.tolist(), strict=True):
+        bends = shaft_flexibility([*planes, height], support.positions, crank_springs(drive), support.diameter, modulus)
+        shape = np.linalg.solve(bends[:-1, :-1], bends[:-1, -1])
+        moves = sum(by * _crank_moves(motion, disc, solid.crank) for disc, by in enumerate(shape.tolist()))
+        yield from _rigid(
+            motion, CRANKS, part * solid.mass, part * solid.about_own_axis, solid.place, np.asarray(moves), turns
+        )
 
 
 def _members(motion: Motion, masses: DriveMasses) -> Iterator[Body]:
     """What is rigid with the wheel, and what with the pin shaft."""
-    axis = complex(masses.places[0].wheel_axis)
-    mass, centre, inertia = _together([each for group in OF_WHEEL for each in masses.of(group)])
-    row = motion.wheel_moves + 1j * (centre - axis) * motion.wheel_turns
-    yield Body(name=WHEEL, turns=False, size=mass, row=_at(motion, centre, row))
-    yield Body(name=WHEEL, turns=True, size=inertia, row=_turning(motion, motion.wheel_turns))
-    mass, centre, inertia = _together([each for group in OF_SHAFT for each in masses.of(group)])
-    nothing = np.zeros(motion.size)
-    yield Body(name=CARRIER, turns=False, size=mass, row=_at(motion, centre, nothing.astype(complex)))
-    yield Body(name=CARRIER, turns=True, size=inertia, row=_turning(motion, nothing))
-
-
-def _together(solids: Sequence[Solid]) -> tuple[float, complex, float]:
-    """Mass, t, centre of mass, mm, and moment of inertia about it, t·mm², of parts that are rigid with each other."""
-    mass = sum(solid.mass for solid in solids)
-    if not mass:
-        return 0.0, 0j, 0.0
-    centre = sum(solid.mass * solid.place for solid in solids) / mass
-    return mass, centre, sum(solid.about(centre) for solid in solids)
+    axis, still = complex(masses.places[0].wheel_axis), np.zeros(motion.size)
+    for name, groups, moves, turns in (
+        (WHEEL, OF_WHEEL, motion.wheel_moves, motion.wheel_turns),
+        (CARRIER, OF_SHAFT, still, still),
+    ):
+        solids = [each for group in groups for each in masses.of(group)]
+        if mass := sum(solid.mass for solid in solids):
+            centre = sum(solid.mass * solid.place for solid in solids) / mass
+            inertia = sum(solid.about(centre) for solid in solids)
+            yield from _rigid(motion, name, mass, inertia, centre, moves + 1j * (centre - axis) * turns, turns)
 
 
 def _given(motion: Motion) -> Iterator[Body]:
@@ -495,10 +395,6 @@ def _given(motion: Motion) -> Iterator[Body]:
     given = motion.drive.inertia
     if given is None:
         return
-    for name, inertia, turns in (
-        (INPUT, given.input, motion.input_turns),
-        (OUTPUT, given.output, motion.output_turns),
-    ):
-        yield Body(name=name, turns=True, size=INERTIA * (inertia or 0.0), row=np.asarray(turns, dtype=complex))
-    mass = TONNE_PER_KG * (given.output_mass or 0.0)
-    yield Body(name=OUTPUT, turns=False, size=mass, row=motion.output_moves)
+    for name, inertia, turns in ((INPUT, given.input, motion.input_turns), (OUTPUT, given.output, motion.output_turns)):
+        yield Body(name=name, turns=True, size=INERTIA * (inertia or 0.0), row=turns.astype(complex))
+    yield Body(name=OUTPUT, turns=False, size=TONNE_PER_KG * (given.output_mass or 0.0), row=motion.output_moves)

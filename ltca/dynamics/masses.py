@@ -1,4 +1,4 @@
-r"""Volume, mass, centre and inertia of every part of a drive, its unbalance, its inertia referred to input and output.
+r"""Volume, mass, centre and inertia of every part of a drive, and the unbalance of its discs.
 
 Parts are plane sections between two heights, as they stand at crank angle 0 in the frame of the pin shaft, z as in
 ``disc.planes``; lengths are those at 20 °C, since warmth changes no mass. Integrals over a section are those along its edge: of
@@ -6,31 +6,27 @@ a function f homogeneous of degree k
 
 .. math:: \int f\, dA = \frac{1}{k+2} \oint f\, (x\, dy - y\, dx) ,
 
-on which the trapezoidal rule is exact to round-off, as for every smooth closed curve. A flank with a lead along its width is
-integrated over the width as well. Pins and rollers are cylinders: crowns, reliefs and inclinations are micrometres.
-
-Inside the suite the unit of mass is the tonne, which is N·s²/mm; moments of inertia are t·mm².
+on which the trapezoidal rule is exact to round-off, as for every smooth closed curve. Pins and rollers are cylinders: crowns,
+reliefs and inclinations are micrometres. Inside the suite the unit of mass is the tonne, which is N·s²/mm.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import isnan, nan
+from operator import attrgetter
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.drive.materials import Material
-from ltca.drive.parts import Disc, Drive, PinShaft, PinWheel
+from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import has_lead, lead_relief
 from ltca.geometry.placement import Placement
 
 TONNE_PER_KG = 1e-3
-"""A tonne is N·s²/mm, the unit of mass that goes with mm, N and s."""
 DENSITY = 1e-12
 """t/mm³ of 1 kg/m³."""
 INERTIA = 1e3
@@ -39,15 +35,16 @@ POINTS_PER_LOBE = 400
 """Of the trapezoidal rule along a flank; half as many change the area by round-off."""
 POINTS_PER_WAVE = 12
 """Of the highest order of a deviation of the flank."""
-OVER_WIDTH = 4
-"""Places of Gauss's rule between the heights at which a lead changes its law: a lead is a square there, second moments of the
-section have its fourth power, and z² comes to it."""
-GAUSS = np.polynomial.legendre.leggauss(OVER_WIDTH)
-"""Places over (−1, 1) and their weights."""
+GAUSS = np.polynomial.legendre.leggauss(4)
+"""Places over (−1, 1) and weights between heights at which a lead changes its law: a lead is a square there, second moments of
+the section have its fourth power, and z² comes to it."""
 DISCS, WHEEL_PINS, SHAFT_PINS, ROLLERS, CRANKS, RING, POSTS = (
     "discs", "wheel pins", "shaft pins", "rollers", "cranks", "ring", "posts",
 )  # fmt: skip
 SLEEVES = {WHEEL_PINS: "sleeves of wheel pins", SHAFT_PINS: "sleeves of shaft pins"}
+
+Single = tuple[Drive, Placement]
+"""One disc as a drive, and the places of its parts."""
 
 
 def circle_section(radius: float, centre: complex = 0j) -> ComplexArray:
@@ -57,10 +54,9 @@ def circle_section(radius: float, centre: complex = 0j) -> ComplexArray:
 
 
 def section_within(points: ComplexArray, steps: ComplexArray) -> ComplexArray:
-    """Return the section inside a closed curve by its points, mm, and what it goes on by from each, mm.
+    """Return ∫dA, ∫z dA, ∫|z|² dA and ∫z² dA inside a closed curve, z = x + iy, mm² to mm⁴, from points and tangents times steps.
 
-    It is ∫dA, ∫z dA, ∫|z|² dA and ∫z² dA with z = x + iy, mm² to mm⁴: sections side by side add up, one that is cut out is
-    subtracted.
+    Sections side by side add up, one that is cut out is subtracted.
     """
     swept = (points.conjugate() * steps).imag
     powers = np.stack((np.ones_like(points), points, np.abs(points) ** 2, points**2))
@@ -76,26 +72,10 @@ def moved_section(section: ComplexArray, by: complex) -> ComplexArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solid:
-    """A part of one material.
+    """A part of one material: `material` is its path in a drive file, `density` in kg/m³ not a number where none is given.
 
-    Attributes
-    ----------
-    name : str
-        ``disc 0``, ``wheel pin 3``, …
-    group : str
-        Which parts it is one of: ``discs``, ``wheel pins``, …
-    material : str
-        Path of its material in a drive file.
-    density : float
-        kg/m³; not a number where the drive does not give it, and so is what follows from it.
-    heights : array, shape (n,)
-        Places z of the sections, mm.
-    weights : array, shape (n,)
-        What each section counts for, mm.
-    sections : array of complex, shape (n, 4)
-        As `section_within`, in the frame of the pin shaft.
-    disc, crank : int
-        Of a disc, and of a crank, that it belongs to; −1 for none.
+    Integrals over z are sums over `heights`, mm, by `weights`, mm, of `sections` (`section_within`), shapes (n,), (n,), (n, 4).
+    `disc` and `crank` tell to which it belongs, −1 to none.
     """
 
     name: str
@@ -105,8 +85,8 @@ class Solid:
     heights: FloatArray
     weights: FloatArray
     sections: ComplexArray
-    disc: int = -1
-    crank: int = -1
+    disc: int
+    crank: int
 
     @property
     def volume(self) -> float:
@@ -135,9 +115,8 @@ class Solid:
         w, z = self.weights, self.heights
         area, first, polar, square = self.sections.T
         xx, yy, xy = 0.5 * (polar + square).real, 0.5 * (polar - square).real, 0.5 * square.imag
-        in_plane = [[w @ xx, w @ xy], [w @ xy, w @ yy]]
-        along = (w * z) @ np.stack((first.real, first.imag, z * area.real), axis=1)
-        second = np.block([[np.array(in_plane), along[:2, None]], [along]])
+        xz, yz, zz = z * first.real, z * first.imag, z * z * area.real
+        second = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ w
         second -= self.volume * np.outer(self.centre, self.centre)
         return np.asarray(np.trace(second) * np.eye(3) - second)
 
@@ -158,17 +137,10 @@ class Solid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unbalance:
-    """Masses on eccentrics: what turns with the cranks about their axes.
+    """Mass times eccentricity of each disc, its rollers and eccentrics, along and ahead of the crank, t·mm.
 
-    Attributes
-    ----------
-    discs : array of complex, shape (discs,)
-        Mass times eccentricity of each disc with its eccentrics and rollers, along and ahead of the crank, t·mm; not a number
-        where the density of discs or rollers is not known.
-    planes : array, shape (discs,)
-        Their axial places, mm.
-    eccentrics : bool
-        Whether the masses of the eccentrics are known and in it.
+    Not a number where the density of discs or rollers is not known; `eccentrics` tells whether that of eccentrics is. `planes`
+    are axial places, mm.
     """
 
     discs: ComplexArray
@@ -177,7 +149,7 @@ class Unbalance:
 
     @property
     def static(self) -> complex:
-        """What is left of all discs together, t·mm."""
+        """Sum over all discs, t·mm."""
         return complex(self.discs.sum())
 
     @property
@@ -186,20 +158,13 @@ class Unbalance:
         return complex(self.planes @ self.discs)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DriveMasses:
-    """Masses of the parts that a drive file describes.
-
-    Attributes
-    ----------
-    drive : Drive
-        Whose, at 20 °C.
-    solids : tuple of Solid
-        Every part, discs first.
-    """
+    """Masses of the parts that a drive file describes, discs first, and the places of the parts of every disc, at 20 °C."""
 
     drive: Drive
     solids: tuple[Solid, ...]
+    places: tuple[Placement, ...]
 
     def of(self, group: str) -> tuple[Solid, ...]:
         """Return the parts of a group."""
@@ -239,61 +204,33 @@ class DriveMasses:
         # Cranks are alike but for errors of micrometres: the first stands for all.
         return sum(solid.about(axis) for solid in self.of(CRANKS) if solid.crank == 0)
 
-    @cached_property
-    def places(self) -> tuple[Placement, ...]:
-        """Places of the parts of every disc."""
-        return tuple(Placement.of_drive(single) for single in single_discs(self.drive))
-
     @property
     def unbalance(self) -> Unbalance:
         """Unbalance of discs, rollers and eccentrics."""
-        arms = [(place.eccentricity * np.exp(1j * place.eccentric_phase)).mean() for place in self.places]
+        arms = np.array([(place.eccentricity * np.exp(1j * place.eccentric_phase)).mean() for place in self.places])
 
         def by_disc(group: str) -> FloatArray:
             """Masses at each disc."""
-            return np.array([sum(s.mass for s in self.of(group) if s.disc == disc) for disc in range(len(arms))])
+            return np.array([sum(s.mass for s in self.of(group) if s.disc == disc) for disc in range(arms.size)])
 
         on_cranks, planes = by_disc(CRANKS), np.array(self.drive.disc.disc_planes, dtype=float)
-        found = (by_disc(DISCS) + by_disc(ROLLERS) + np.nan_to_num(on_cranks)) * np.array(arms)
+        found = (by_disc(DISCS) + by_disc(ROLLERS) + np.nan_to_num(on_cranks)) * arms
         return Unbalance(discs=found, planes=planes, eccentrics=not np.isnan(on_cranks).any())
 
 
 def drive_masses(drive: Drive) -> DriveMasses:
-    """Return the masses of the parts of a drive as its file describes them.
+    """Return the masses of the parts of a drive, warm or not, as its file describes them.
 
     Flanges of a carrier, a housing and cages have no mass: a file gives neither radius nor shape of these.
-
-    Parameters
-    ----------
-    drive : Drive
-        With its temperatures or without; lengths are those at 20 °C.
-
-    Returns
-    -------
-    DriveMasses
-
-    Examples
-    --------
-    >>> from ltca.reading.drive_file import load_drive
-    >>> masses = drive_masses(load_drive("robot-joint").cases["nominal"])
-    >>> [f"{group}: {1e3 * masses.mass_of(group):.4f} kg" for group in masses.groups[:2]]
-    ['discs: 1.2665 kg', 'wheel pins: 0.1288 kg']
     """
     drive = replace(drive, temperature=None)
-    solids = (*_discs(drive), *_pins(drive), *_rollers(drive), *_cranks(drive))
-    return DriveMasses(drive=drive, solids=solids)
+    discs = [(single, Placement.of_drive(single)) for single in single_discs(drive)]
+    solids = (*_discs(discs), *_pins(drive), *_rollers(discs), *_cranks(drive, discs))
+    return DriveMasses(drive=drive, solids=solids, places=tuple(place for _, place in discs))
 
 
 def flank_section(profile: FlankProfile, inward: float = 0.0) -> ComplexArray:
-    """Return the section inside a flank that is moved into the material along its normal, in the frame of the disc.
-
-    Parameters
-    ----------
-    profile : FlankProfile
-        Of one disc.
-    inward : float
-        By how much, mm.
-    """
+    """Return the section inside the flank of one disc, moved into the material along its normal, mm, in the frame of the disc."""
     waves = 0 if profile.deviation is None else max(profile.deviation.orders, default=0)
     count = max(POINTS_PER_LOBE * (round(profile.reduction_ratio) - 1), POINTS_PER_WAVE * waves)
     parameter = 2.0 * np.pi * np.arange(count) / count
@@ -302,181 +239,150 @@ def flank_section(profile: FlankProfile, inward: float = 0.0) -> ComplexArray:
     return section_within(np.asarray(points), np.asarray(steps))
 
 
-def _discs(drive: Drive) -> Iterator[Solid]:
-    for number, single in enumerate(single_discs(drive)):
-        place, profile, disc = Placement.of_drive(single), FlankProfile.of_drive(single), single.disc
-        radii = [*place.hole_radii.tolist(), *[single.bore_radius] * place.cranks]
-        centres = [*place.hole_centres.tolist(), *place.bore_centres.tolist()]
-        cut = sum(circle_section(radius, centre) for radius, centre in zip(radii, centres, strict=True))
-        (plane,), stands = disc.disc_planes, complex(place.race_centre(np.zeros(1))[0])
-        heights, weights = _across(disc)
-        # Of a flank that is straight along its width one section is that of all heights.
-        shorts = lead_relief(disc, heights) if has_lead(disc) else np.zeros(1)
-        each = [moved_section(flank_section(profile, short) - cut, stands) for short in shorts.tolist()]
-        yield Solid(
-            name=f"disc {number}",
-            group=DISCS,
-            material="materials.disc",
-            density=_density(drive.materials.disc),
-            heights=plane + heights,
-            weights=weights,
-            sections=np.broadcast_to(np.array(each), (heights.size, 4)),
-            disc=number,
-        )
-
-
-def _density(material: Material) -> float:
-    return nan if material.density is None else material.density
-
-
-def _across(disc: Disc) -> tuple[FloatArray, FloatArray]:
-    """Places above the middle of a disc, mm, and their weights, mm."""
-    half, relief = 0.5 * disc.thickness, disc.lead_relief_length
-    ends = [-half, *((relief - half, half - relief) if has_lead(disc) and 0.0 < relief < half else ()), half]
-    return _gauss(sorted(ends))
+def _solid(
+    drive: Drive,
+    name: str,
+    group: str,
+    material: str,
+    section: ComplexArray,
+    ends: Sequence[float],
+    *,
+    disc: int = -1,
+    crank: int = -1,
+) -> Solid:
+    """A part between heights, with one section or one at every height of `_gauss`."""
+    heights, weights = _gauss(ends)
+    density = attrgetter(material)(drive).density
+    return Solid(
+        name=name,
+        group=group,
+        material=material,
+        density=nan if density is None else density,
+        heights=heights,
+        weights=weights,
+        sections=np.broadcast_to(section, (heights.size, 4)),
+        disc=disc,
+        crank=crank,
+    )
 
 
 def _gauss(ends: Sequence[float]) -> tuple[FloatArray, FloatArray]:
+    """Heights and weights of Gauss's rule between neighbouring ends, mm."""
     places, weights = GAUSS
     low, high = np.array(ends[:-1])[:, None], np.array(ends[1:])[:, None]
     half = 0.5 * (high - low)
     return (low + half * (1.0 + places)).ravel(), (half * weights).ravel()
 
 
-def _cylinder(
-    name: str, group: str, material: str, density: float, section: ComplexArray, ends: tuple[float, float], **of: int
-) -> Solid:
-    """A part with one section; `of` are its disc and crank."""
-    heights, weights = _gauss(ends)
-    return Solid(
-        name=name,
-        group=group,
-        material=material,
-        density=density,
-        heights=heights,
-        weights=weights,
-        sections=np.tile(section, (heights.size, 1)),
-        **of,
-    )
+def _about(middle: float, length: float) -> tuple[float, float]:
+    """Ends of a length about its middle."""
+    return middle - 0.5 * length, middle + 0.5 * length
 
 
-def _stack(drive: Drive) -> tuple[float, float]:
-    half = 0.5 * drive.disc.thickness
-    return min(drive.disc.disc_planes) - half, max(drive.disc.disc_planes) + half
-
-
-def _in_the_middle(drive: Drive) -> Placement:
-    """Where pins stand at z = 0, the zero of the discs' planes, about which they are inclined."""
-    first = single_discs(drive)[0]
-    return Placement.of_drive(replace(first, disc=replace(first.disc, planes=(0.0,))))
+def _discs(discs: Sequence[Single]) -> Iterator[Solid]:
+    for number, (single, place) in enumerate(discs):
+        profile, disc = FlankProfile.of_drive(single), single.disc
+        radii = [*place.hole_radii.tolist(), *[single.bore_radius] * place.cranks]
+        centres = [*place.hole_centres.tolist(), *place.bore_centres.tolist()]
+        cut = sum(circle_section(radius, centre) for radius, centre in zip(radii, centres, strict=True))
+        (plane,), stands = disc.disc_planes, complex(place.race_centre(np.zeros(1))[0])
+        half, relief = 0.5 * disc.thickness, disc.lead_relief_length
+        ends, shorts = (
+            [-half, half],
+            np.zeros(1),
+        )  # of a flank that is straight along its width one section is that of all
+        if has_lead(disc):
+            ends = sorted({*ends, relief - half, half - relief} if 0.0 < relief < half else ends)
+            shorts = lead_relief(disc, _gauss(ends)[0])
+        each = [moved_section(flank_section(profile, short) - cut, stands) for short in shorts.tolist()]
+        heights = [plane + end for end in ends]
+        yield _solid(single, f"disc {number}", DISCS, "materials.disc", np.array(each), heights, disc=number)
 
 
 def _pins(drive: Drive) -> Iterator[Solid]:
     """Pins and sleeves of wheel and shaft, the ring of the wheel, posts of the carrier."""
-    place, shaft, materials = _in_the_middle(drive), drive.pin_shaft, drive.materials
+    first, shaft, ring, posts = single_discs(drive)[0], drive.pin_shaft, drive.ring, drive.posts
+    # Pins may be inclined about z = 0, the zero of the planes of the discs.
+    place = Placement.of_drive(replace(first, disc=replace(first.disc, planes=(0.0,))))
     axis = complex(place.wheel_axis)
     centres, radii = place.wheel_pin_centres + axis, place.wheel_pin_radii
     yield from _with_sleeves(drive, WHEEL_PINS, drive.pin_wheel, drive.wheel_pin_span, centres, radii)
-    if drive.ring is not None:
-        ring = drive.ring
+    if ring is not None:
         section = circle_section(ring.outer_radius, axis) - circle_section(ring.inner_radius, axis)
-        yield _cylinder(RING, RING, "ring.material", _density(ring.material), section, _about_middle(ring.width))
+        yield _solid(drive, RING, RING, "ring.material", section, _about(0.0, ring.width))
     if shaft is not None:
         centres, radii = place.shaft_pin_centres, place.shaft_pin_radii
         yield from _with_sleeves(drive, SHAFT_PINS, shaft, drive.shaft_pin_span, centres, radii)
-    if (posts := drive.posts) is not None:
+    if posts is not None:
         beside = drive.crank.angle + np.pi / drive.crank.number if shaft is None else np.pi / shaft.number_of_pins
         around = posts.radius * np.exp(1j * (beside + 2.0 * np.pi * np.arange(posts.number) / posts.number))
-        radii = np.full(posts.number, 0.5 * posts.size)
-        yield from _on_circle(POSTS, "carrier", materials.carrier, around, radii, _about_middle(drive.post_length))
-
-
-def _about_middle(length: float) -> tuple[float, float]:
-    return -0.5 * length, 0.5 * length
+        radii, ends = np.full(posts.number, 0.5 * posts.size), _about(0.0, drive.post_length)
+        yield from _on_circle(drive, POSTS, "materials.carrier", around, radii, ends)
 
 
 def _with_sleeves(
     drive: Drive, group: str, pins: PinWheel | PinShaft, span: float, centres: ComplexArray, radii: FloatArray
 ) -> Iterator[Solid]:
     """Pins of wheel or shaft, then the sleeves on them; `radii` are those at the flank or the holes."""
-    stack, seat, part = _stack(drive), pins.seat, group.removesuffix("s").replace(" ", "_")
-    sleeves = seat.kind == "sleeve"
+    seat, planes, half = pins.seat, drive.disc.disc_planes, 0.5 * drive.disc.thickness
+    sleeves, stack = seat.kind == "sleeve", (min(planes) - half, max(planes) + half)
     own = np.full_like(radii, seat.pin_radius) if sleeves and seat.pin_radius is not None else radii
-    ends = stack if pins.beam is None else _about_middle(span)
-    yield from _on_circle(group, part, getattr(drive.materials, part), centres, own, ends)
+    material = f"materials.{group.removesuffix('s').replace(' ', '_')}"
+    yield from _on_circle(drive, group, material, centres, own, stack if pins.beam is None else _about(0.0, span))
     if sleeves:
         bore = seat.bore_radius or 0.0
-        yield from _on_circle(SLEEVES[group], "sleeve", drive.materials.sleeve, centres, radii, stack, bore)
+        yield from _on_circle(drive, SLEEVES[group], "materials.sleeve", centres, radii, stack, bore)
 
 
 def _on_circle(
+    drive: Drive,
     group: str,
-    part: str,
-    material: Material,
+    material: str,
     centres: ComplexArray,
     radii: FloatArray,
     ends: tuple[float, float],
     bore: float = 0.0,
 ) -> Iterator[Solid]:
     """Round parts that stand about an axis, with a bore of some radius."""
-    name, density = group.replace("sleeves", "sleeve").removesuffix("s"), _density(material)
+    name = group.replace("sleeves", "sleeve").removesuffix("s")
     for number, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
         section = circle_section(radius, centre) - circle_section(bore, centre)
-        yield _cylinder(f"{name} {number}", group, f"materials.{part}", density, section, ends)
+        yield _solid(drive, f"{name} {number}", group, material, section, ends)
 
 
-def _rollers(drive: Drive) -> Iterator[Solid]:
+def _rollers(discs: Sequence[Single]) -> Iterator[Solid]:
     """Rollers on their inner races at crank angle 0."""
-    density = _density(drive.materials.roller)
-    for number, single in enumerate(single_discs(drive)):
-        place, ends = Placement.of_drive(single), _of_rollers(single)
-        races, radii = place.race_centres(np.zeros(1))[0], place.roller_radii
-        rays = place.roller_rays(np.zeros(1))[0]
+    for number, (single, place) in enumerate(discs):
+        ends = _about(single.disc.disc_planes[0], single.roller_length)
+        races, radii, rays = place.race_centres(np.zeros(1))[0], place.roller_radii, place.roller_rays(np.zeros(1))[0]
         centres = races[place.roller_cranks] + (single.crank_bearing.inner_race_radius + radii) * rays
         for roller, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
             name, section = f"roller {roller} of disc {number}", circle_section(radius, centre)
-            yield _cylinder(name, ROLLERS, "materials.roller", density, section, ends, disc=number)
+            yield _solid(single, name, ROLLERS, "materials.roller", section, ends, disc=number)
 
 
-def _of_rollers(single: Drive) -> tuple[float, float]:
-    """Ends of the rollers of one disc, mm."""
-    (plane,), half = single.disc.disc_planes, 0.5 * single.roller_length
-    return plane - half, plane + half
-
-
-def _cranks(drive: Drive) -> Iterator[Solid]:
+def _cranks(drive: Drive, discs: Sequence[Single]) -> Iterator[Solid]:
     """Eccentrics as wide as the rollers, and the shaft between its bearings beside them; both solid.
 
     They are of the material of the crankshaft, or of that of the inner races where it has no density.
     """
-    named = "crankshaft" if drive.materials.crankshaft.density is not None else "inner_race"
-    material, density = f"materials.{named}", _density(getattr(drive.materials, named))
-    taken, axes = list[tuple[float, float]](), list[complex]()
-    for disc, single in enumerate(single_discs(drive)):
-        place, ends = Placement.of_drive(single), _of_rollers(single)
+    support, taken = drive.crank.support, list[tuple[float, float]]()
+    material = f"materials.{'inner_race' if drive.materials.crankshaft.density is None else 'crankshaft'}"
+    for disc, (single, place) in enumerate(discs):
+        ends, radius = _about(single.disc.disc_planes[0], single.roller_length), single.crank_bearing.inner_race_radius
         taken.append(ends)
-        axes = place.crank_axes.tolist()
         for crank, centre in enumerate(place.race_centres(np.zeros(1))[0].tolist()):
-            section, name = (
-                circle_section(single.crank_bearing.inner_race_radius, centre),
-                f"eccentric {disc} of crank {crank}",
-            )
-            yield _cylinder(name, CRANKS, material, density, section, ends, disc=disc, crank=crank)
-    support = drive.crank.support
-    if support is None:
-        return
-    for piece, ends in enumerate(_beside(support.positions, sorted(taken))):
-        for crank, axis in enumerate(axes):
-            section, name = circle_section(0.5 * support.diameter, axis), f"shaft {piece} of crank {crank}"
-            yield _cylinder(name, CRANKS, material, density, section, ends, crank=crank)
+            name, section = f"eccentric {disc} of crank {crank}", circle_section(radius, centre)
+            yield _solid(drive, name, CRANKS, material, section, ends, disc=disc, crank=crank)
+    for piece, ends in enumerate([] if support is None else _beside(support.positions, sorted(taken))):
+        for crank, axis in enumerate(discs[0][1].crank_axes.tolist()):
+            name, section = f"shaft {piece} of crank {crank}", circle_section(0.5 * support.diameter, axis)
+            yield _solid(drive, name, CRANKS, material, section, ends, crank=crank)
 
 
-def _beside(whole: tuple[float, float], taken: Sequence[tuple[float, float]]) -> Iterator[tuple[float, float]]:
+def _beside(whole: tuple[float, float], taken: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     """What is left of a length beside some pieces of it, in ascending order."""
-    low, end = whole
-    for first, last in taken:
-        if min(first, end) > low:
-            yield low, min(first, end)
-        low = max(low, last)
-    if end > low:
-        yield low, end
+    firsts, lasts = zip(*taken, strict=True)
+    low = np.maximum.accumulate([whole[0], *lasts])
+    high = np.minimum([*firsts, whole[1]], whole[1])
+    return [(start, end) for start, end in zip(low.tolist(), high.tolist(), strict=True) if end > start]

@@ -66,7 +66,7 @@ def position_of(drive, angle=0.3):
     model, motion = replace(HalfSpace().prepare(drive).model, friction=None), Motion.of_drive(drive)
     found = solve_at_output(model, [drive], np.array([angle]), drive.load.torque)
     bodies = moving_bodies(motion, drive_masses(drive), angle)
-    stiffness, mass = stiffness_matrices(model, motion, found)[0], mass_matrix(bodies, motion.size)
+    stiffness, mass = stiffness_matrices(model, motion, found)[0], mass_matrix(bodies)
     free = drive.inertia is not None and drive.inertia.input is not None
     row = np.zeros(motion.size) if free else motion.input_turns
     basis = free_coordinates(row, levers(model, motion, np.atleast_2d(lever_arms(model))[0]))

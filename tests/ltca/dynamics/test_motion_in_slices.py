@@ -118,7 +118,7 @@ def test_small_rocking_is_the_mode():
     run = prepared("plastic", Course.of_values("steady", 1.0, 1e-6))
     equation = replace(run.equation, input_motion=lambda _: (0.0, 0.0, 0.0))
     model, motion, still = balanced("plastic", 0.0)
-    mass = mass_matrix(moving_bodies(motion, drive_masses(drive_of("plastic")), 0.0), motion.size)
+    mass = mass_matrix(moving_bodies(motion, drive_masses(drive_of("plastic")), 0.0))
     modes = solve_modes(stiffness_matrices(model, motion, still)[0], mass, equation.basis, None)
     leans = leans_of(motion)
     rocking = [shape[leans] @ mass[np.ix_(leans, leans)] @ shape[leans] for shape in modes.shapes.T]
@@ -292,8 +292,8 @@ def test_kinetic_energy_is_that_of_a_body_that_spins_and_leans():
         Body(name="disc 0", turns=True, size=4.9, row=turns.astype(complex)),
         *_leaning(motion, SimpleNamespace(inertia=tensor), 0),
     )
-    kinetic = KineticEnergy.of_bodies(bodies, bodies, crank=3, frame=frame, displaces=np.array([1.0, 1.0, 1.0, 0.0]))
-    kinetic = replace(kinetic, spins=(LeaningSpin(inertia=4.9, turns=turns, lean=0),))
+    spin, displaces = LeaningSpin(inertia=4.9, turns=turns, lean=0), np.array([1.0, 1.0, 1.0, 0.0])
+    kinetic = KineticEnergy.of_bodies([bodies] * 3, crank=3, frame=frame, displaces=displaces, spins=(spin,))
     size = 1e-4
     x, rate = np.array([0.7 * size, -0.4 * size, 0.3 * size, 0.6]), np.array([1.3 * size, 0.9 * size, 0.8, 2.0])
 
