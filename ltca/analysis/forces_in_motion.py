@@ -32,7 +32,6 @@ from ltca.analysis.vibration import Vibration
 from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.compliance.response import Start
 from ltca.dynamics.stiffness import levers
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
@@ -100,7 +99,7 @@ def force_slopes(found: Vibration, model: Reducer) -> Iterator[ForceSlopes]:
     """
     motion = found.motion
     contacts = replace(model, stage=None, friction=None, external=None)
-    steps = STEP / levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    steps = STEP / levers(model, motion)
     every = np.arange(found.walked_angle.size)
     for places in np.array_split(every, -(-every.size // TOGETHER)):
         angle, pose = found.walked_angle[places], found.walked_pose[places]

@@ -34,7 +34,6 @@ from ltca.dynamics.modes import free_coordinates
 from ltca.dynamics.motion import WORKS, Equation, Profile
 from ltca.dynamics.stiffness import levers
 from ltca.dynamics.teeth import TeethForces
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DamagedFileError, DriveError
@@ -480,7 +479,7 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
     # A first stage turns the cranks against its sun.
     turns = motion.input_turns
     lead = motion.rigid / float(turns @ motion.rigid)
-    lever = levers(replace(model, friction=None), motion, np.atleast_2d(lever_arms(replace(model, friction=None)))[0])
+    lever = levers(model, motion)
     against = warm.load_sign * warm.load.torque
     told = course.input_motion(sense)
     crank_speed = course.speed * 2.0 * np.pi / 60.0 * abs(warm.crank_turns_per_input)

@@ -27,7 +27,6 @@ from ltca.dynamics.kinetics import Motion, mass_matrix, moving_bodies, require_m
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, free_coordinates, mode_words, solve_modes
 from ltca.dynamics.stiffness import levers, stiffness_matrices
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
@@ -268,7 +267,7 @@ def vibration(
     model = replace(engine.prepare(drive).model, friction=None)
     angles, parts = position_angles(positions), np.unique([*torque_parts, 1.0])
     row = motion.input_turns if holds_input(drive) else np.zeros(motion.size)
-    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    lever = levers(model, motion)
     basis, turned = free_coordinates(row, lever), motion.turned(angles)
     rigid = None if holds_input(drive) else motion.rigid
     bodies = [moving_bodies(motion, masses, float(angle)) for angle in angles]

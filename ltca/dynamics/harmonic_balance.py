@@ -51,20 +51,9 @@ RESOLVED = 0.9 * FINER
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PulsatingStiffness:
-    """Stiffness over a turn of the crank, N/mm, N and N·mm, symmetric.
-
-    Attributes
-    ----------
-    over_turn : array, shape (positions, n, n)
-        At evenly spaced crank angles 2πk/N, an even number of them.
-    """
+    """Stiffness at crank angles 2πk/N of a turn, N even, symmetric, N/mm, N and N·mm, shape (N, n, n)."""
 
     over_turn: FloatArray
-
-    @classmethod
-    def constant(cls, stiffness: FloatArray, positions: int) -> PulsatingStiffness:
-        """Return a stiffness that does not pulse."""
-        return cls(over_turn=np.broadcast_to(stiffness, (positions, *stiffness.shape)))
 
     @property
     def mean(self) -> FloatArray:
@@ -84,22 +73,10 @@ class PulsatingStiffness:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HillSystem:
-    """What vibrates, seen from the crank.
+    """What vibrates, seen from the crank: M, t, C, N·s/mm, J, and K(φ), whose mean has a loss factor η: K̄ (1 + iη).
 
-    Attributes
-    ----------
-    mass, damping, spin : array, shape (n, n)
-        M, t; C, N·s/mm; J.
-    loss_factor : float
-        η of the mean stiffness: K̄ (1 + iη).
-    stiffness : PulsatingStiffness
-        K(φ).
-    basis : array, shape (n, m)
-        Motions that are free, as displacements.
-    steady : array, shape (m, k)
-        Those of them that are free on average of a turn.
-    splits : dict
-        Slow motions and those beside them by how many are slow, kept from speed to speed.
+    `basis` spans the motions that are free, as displacements, shape (n, m), `steady` those of them that are free on average of a
+    turn, shape (m, k). `splits` keeps slow motions and those beside them by how many are slow, from speed to speed.
     """
 
     mass: FloatArray
@@ -116,14 +93,16 @@ class HillSystem:
 
         Orders are not negative, and zero is the first.
         """
-        rates = 1j * speed * orders[:, None, None] * np.eye(self.mass.shape[0]) + speed * self.spin
-        damped = 1j * speed * orders[:, None, None] * self.damping
-        lossy = 1.0 + 1j * self.loss_factor * (orders > 0.0)[:, None, None]
-        whole = self.basis.T @ (self.mass @ rates @ rates + damped + self.stiffness.mean * lossy) @ self.basis
-        found = np.zeros_like(whole)
-        found[1:] = np.linalg.inv(whole[1:])
-        found[0] = self.steady @ np.linalg.inv(self.steady.T @ whole[0].real @ self.steady) @ self.steady.T
-        return np.asarray(found)
+        whole = self._moving(speed, orders) + self.basis.T @ self.stiffness.mean @ self.basis
+        at_rest = self.steady @ np.linalg.inv(self.steady.T @ whole[0].real @ self.steady) @ self.steady.T
+        return np.concatenate((at_rest[None], np.linalg.inv(whole[1:])))
+
+    def _moving(self, speed: float, orders: FloatArray) -> ComplexArray:
+        """Inertia, damping and losses by amplitudes of the free motions, shape (orders, m, m)."""
+        rate = 1j * speed * orders[:, None, None]
+        rates = rate * np.eye(self.mass.shape[0]) + speed * self.spin
+        lossy = 1j * self.loss_factor * (rate != 0.0) * self.stiffness.mean
+        return np.asarray(self.basis.T @ (self.mass @ rates @ rates + rate * self.damping + lossy) @ self.basis)
 
     def respond(
         self,
@@ -135,6 +114,8 @@ class HillSystem:
         highest: int | None = None,
     ) -> ComplexArray:
         """Return amplitudes of the motion under those of a force, shape (1 + orders, n): its mean, then a of Re a·exp(i·order·φ).
+
+        ConvergenceError where the pulsation is not balanced in `DIRECTIONS`.
 
         Parameters
         ----------
@@ -148,11 +129,6 @@ class HillSystem:
             Whether the stiffness does; without, its mean answers.
         highest : int, optional
             Whole order from which on the motion is cut off; all are taken by default.
-
-        Raises
-        ------
-        ConvergenceError
-            When the pulsation is not balanced in `DIRECTIONS`.
         """
         compliance = self.compliance(speed, np.concatenate(([0.0], orders)))
         still = np.einsum("oij,oj->oi", compliance, force @ self.basis)
@@ -171,14 +147,10 @@ class HillSystem:
 
     def _balanced(self, speed: float, force: ComplexArray) -> ComplexArray:
         """Whole orders of the motion, zero first, over the free motions."""
-        samples, (whole, size) = self.stiffness.over_turn.shape[0], force.shape
-        orders, basis = np.arange(float(whole)), self.basis
-        rates = 1j * speed * orders[:, None, None] * np.eye(self.mass.shape[0]) + speed * self.spin
-        mean, mass = basis.T @ self.stiffness.mean @ basis, basis.T @ self.mass @ basis
-        lossy = 1j * self.loss_factor * (orders > 0.0)[:, None, None] * mean
-        damped = 1j * speed * orders[:, None, None] * self.damping
-        moving = basis.T @ (self.mass @ rates @ rates + damped) @ basis + lossy
+        samples, (whole, size), basis = self.stiffness.over_turn.shape[0], force.shape, self.basis
+        moving = self._moving(speed, np.arange(float(whole)))
         stiffness = basis.T @ self.stiffness.over_turn @ basis
+        mean, mass = stiffness.mean(axis=0), basis.T @ self.mass @ basis
         held = self.steady @ self.steady.T
         split, resolved = (self._split(stiffness, mean, mass, part * whole * speed) for part in (BEYOND, RESOLVED))
         answers = _inverses(split.slow.T @ moving @ split.slow + split.condensed.mean(axis=0))
@@ -191,7 +163,12 @@ class HillSystem:
             self.loss_factor * slow.T @ mean @ slow,
             speed,
         )
-        scale = np.concatenate(([samples], np.full(whole - 1, 0.5 * samples)))[:, None]
+
+        def complex_of(values: FloatArray) -> ComplexArray:
+            return values.view(np.complex128).reshape(whole, size)
+
+        def real_of(amplitudes: ComplexArray) -> FloatArray:
+            return np.asarray(amplitudes.ravel().view(np.float64), dtype=np.float64)
 
         def in_time(amplitudes: ComplexArray) -> FloatArray:
             return np.asarray(np.fft.irfft(amplitudes, samples, axis=0))
@@ -202,10 +179,10 @@ class HillSystem:
             return found
 
         def balance(values: FloatArray) -> FloatArray:
-            amplitudes = values.view(np.complex128).reshape(whole, size)
+            amplitudes = complex_of(values)
             forces = by_orders(_times(stiffness, in_time(amplitudes))) + np.einsum("oij,oj->oi", moving, amplitudes)
             forces[0] = held @ forces[0]
-            return np.asarray(forces.ravel().view(np.float64), dtype=np.float64)
+            return real_of(forces)
 
         def by_mean(pushed: FloatArray) -> FloatArray:
             return in_time(np.einsum("oij,oj->oi", answers, np.fft.rfft(pushed, axis=0)[:whole]))
@@ -214,17 +191,16 @@ class HillSystem:
             return _at_positions(over_turn.answer(_at_positions(pushed, FINER * samples)), samples)
 
         def by_positions(values: FloatArray) -> FloatArray:
-            found = by_orders(split.answer(in_time(values.view(np.complex128).reshape(whole, size)), by_mean))
-            return np.asarray(found.ravel().view(np.float64), dtype=np.float64)
+            return real_of(by_orders(split.answer(in_time(complex_of(values)), by_mean)))
 
         def prepared(values: FloatArray) -> FloatArray:
             found = by_positions(values)
-            if slow.shape[1]:
-                left = (values - balance(found)).view(np.complex128).reshape(whole, size)
-                pushed = by_orders(resolved.answer(in_time(left), pushed_between))
-                found = found + pushed.ravel().view(np.float64)
-            return found
+            if not slow.shape[1]:
+                return found
+            left = in_time(complex_of(values - balance(found)))
+            return found + real_of(by_orders(resolved.answer(left, pushed_between)))
 
+        scale = np.concatenate(([samples], np.full(whole - 1, 0.5 * samples)))[:, None]
         right = force * scale
         right[0] = held @ right[0]
         # From the left what is left is measured in displacements, from the right as a force: where a preconditioner is nearly
@@ -235,16 +211,15 @@ class HillSystem:
             for one in (balance, prepared, by_positions)
         )
         options = {"rtol": SOLVED, "atol": 0.0, "restart": DIRECTIONS, "maxiter": CYCLES}
-        given = right.ravel().view(np.float64)
-        found, missed = gmres(of_force, given, M=of_displacement, **options)
-        if missed:
-            found, missed = gmres(of_force, given, M=alone, **options)
-        if missed:
-            pushed, missed = gmres(of_force @ of_displacement, given, **options)
-            found = prepared(pushed)
+        given = real_of(right)
+        for preconditioner in (of_displacement, alone):
+            found, missed = gmres(of_force, given, M=preconditioner, **options)
+            if not missed:
+                return np.asarray(complex_of(found) / scale)
+        pushed, missed = gmres(of_force @ of_displacement, given, **options)
         if missed:
             raise ConvergenceError(f"no periodic motion found at {speed:.6g} rad/s of the crank", [])
-        return np.asarray(found.view(np.complex128).reshape(whole, size) / scale)
+        return np.asarray(complex_of(prepared(pushed)) / scale)
 
 
 def _at_positions(values: FloatArray, samples: int) -> FloatArray:
@@ -260,17 +235,16 @@ def _inverses(matrices: ComplexArray) -> ComplexArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Split:
-    """Slow motions a, as columns, and those beside them, b, which answer at every position at once."""
+    """Slow motions a, as columns, and those beside them, b, which answer at every position at once.
+
+    `motions` are both, a first; `at_once`, `across` and `condensed` are K_bb⁻¹, K_bb⁻¹ K_ba and K_eff at every position.
+    """
 
     slow: FloatArray
     motions: FloatArray
-    """Both, a first."""
     at_once: FloatArray
-    """K_bb⁻¹."""
     across: FloatArray
-    """K_bb⁻¹ K_ba."""
     condensed: FloatArray
-    """K_eff of the slow ones."""
 
     @classmethod
     def of(cls, stiffness: FloatArray, mass: FloatArray, slow: FloatArray) -> _Split:
@@ -278,14 +252,14 @@ class _Split:
         count = slow.shape[1]
         parts = motions.T @ stiffness @ motions
         at_once: FloatArray = np.asarray(np.linalg.inv(parts[:, count:, count:]), dtype=np.float64)
-        across: FloatArray = np.asarray(at_once @ parts[:, count:, :count], dtype=np.float64)
+        across: FloatArray = at_once @ parts[:, count:, :count]
         condensed = parts[:, :count, :count] - parts[:, :count, count:] @ across
         return cls(slow=slow, motions=motions, at_once=at_once, across=across, condensed=condensed)
 
     def answer(self, force: FloatArray, slowly: Callable[[FloatArray], FloatArray]) -> FloatArray:
         """Motion under forces at the positions, of which the slow ones are told what pushes them."""
         count = self.slow.shape[1]
-        turned: FloatArray = np.asarray(force @ self.motions, dtype=np.float64)
+        turned: FloatArray = force @ self.motions
         moved = slowly(turned[:, :count] - np.einsum("pba,pb->pa", self.across, turned[:, count:]))
         quick = _times(self.at_once, turned[:, count:]) - _times(self.across, moved)
         return np.asarray(np.concatenate((moved, quick), axis=1) @ self.motions.T)
@@ -293,15 +267,16 @@ class _Split:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _PushedMotion:
-    """Motions over a turn that positions push: z_{k+1} = F_k z_k + G_k f_k, a_k = P_k (S z_k − D f_k)."""
+    """Motions over a turn that positions push: z_{k+1} = F_k z_k + G_k f_k, a_k = P_k (S z_k − D f_k), D of orders beyond them.
+
+    `levels` are F of single positions, of two together, of four, …; the first are filled up with ones to a power of two.
+    `closing` is (1 − F of the turn)⁻¹; `push`, `direct` and `here` are G, D and P.
+    """
 
     levels: tuple[FloatArray, ...]
-    """F of single positions, of two together, of four, …; the first are filled up with ones to a power of two."""
     closing: FloatArray
-    """(1 − F of the turn)⁻¹."""
     push: FloatArray
     direct: FloatArray
-    """D of orders beyond the positions."""
     here: FloatArray
 
     @classmethod
@@ -328,7 +303,7 @@ class _PushedMotion:
         # Pushes have every order that looks alike at the positions: what these add to the first is all but the same to all.
         turn = np.exp(2j * np.pi / samples) * np.eye(2 * count)
         own = np.linalg.inv(mean + outward + 1j * speed * damping - speed**2 * mass)
-        direct: FloatArray = np.asarray((np.linalg.solve(turn - onward, pushed)[:count] - own).real, dtype=np.float64)
+        direct: FloatArray = (np.linalg.solve(turn - onward, pushed)[:count] - own).real
         beside = stiffness - mean
         here = np.linalg.inv(np.eye(count) - direct @ beside)
         factors = np.tile(onward, (1 << (samples - 1).bit_length(), 1, 1))
@@ -386,17 +361,7 @@ def _beside(motions: FloatArray, mass: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnstableRange:
-    """Speeds of the crank at which an order of the stiffness shakes two modes up, to first order of the pulsation.
-
-    Attributes
-    ----------
-    slowest, fastest : float
-        Of the crank, rad/s.
-    order : int
-        By turn of the crank.
-    modes : tuple of int
-        Both modes, the same twice where the order meets twice its frequency.
-    """
+    """Speeds, rad/s, of the crank at which an order of the stiffness shakes two modes up, or one twice, to first order."""
 
     slowest: float
     fastest: float
@@ -407,23 +372,11 @@ class UnstableRange:
 def unstable_ranges(
     stiffness: PulsatingStiffness, frequency: FloatArray, shapes: FloatArray, damping_ratio: float, fastest: float
 ) -> tuple[UnstableRange, ...]:
-    """Return speeds up to a fastest one at which parametric resonances grow, ascending.
+    """Return speeds of the crank up to a fastest one, rad/s, at which parametric resonances grow, ascending.
 
-    Parameters
-    ----------
-    stiffness : PulsatingStiffness
-        K(φ).
-    frequency : array, shape (modes,)
-        ω of the mean stiffness, rad/s, positive.
-    shapes : array, shape (n, modes)
-        Mass-normalised.
-    damping_ratio : float
-        ζ of every mode, positive.
-    fastest : float
-        Of the crank, rad/s.
+    Modes are those of the mean stiffness, of frequencies ω > 0, rad/s, mass-normalised, shape (n, modes), and damped alike.
     """
-    found = []
-    damped = damping_ratio * frequency
+    found, damped = [], damping_ratio * frequency
     growth = np.abs(shapes.T @ stiffness.amplitude @ shapes) ** 2 / (16.0 * np.multiply.outer(frequency, frequency))
     excess = growth / np.multiply.outer(damped, damped) - 1.0
     for place, first, second in np.argwhere(np.triu(excess > 0.0)).tolist():

@@ -121,7 +121,8 @@ class Motion:
         pose = self.pose
         last = pose.lean_place.start
         of_cranks = np.arange(last - 2 * pose.cranks * pose.leans, last)
-        return np.r_[(pose.own * np.arange(pose.discs)[:, None] + of_cranks).ravel(), pose.wheel_lean_place]
+        found = np.r_[(pose.own * np.arange(pose.discs)[:, None] + of_cranks).ravel(), pose.wheel_lean_place]
+        return np.asarray(found, dtype=np.intp)
 
     def unit(self, place: int | None) -> FloatArray:
         """Return the row of one coordinate; zeros of none."""

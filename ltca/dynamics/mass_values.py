@@ -13,8 +13,6 @@ from ltca.dynamics.masses import CRANKS, DISCS, INERTIA, TONNE_PER_KG, DriveMass
 
 GRAM = 1e-3 * TONNE_PER_KG
 """t of a gram."""
-BALANCED = 1e-9
-"""Part of the unbalance of all discs, taken one by one, below which what is left of them is round-off."""
 NAMES = (
     "mass", "disc_mass", "disc_inertia", "static_unbalance", "couple_unbalance", "reflected_inertia_input",
     "reflected_inertia_output",
@@ -23,54 +21,34 @@ NAMES = (
 
 
 def mass_values(drive: Drive) -> dict[str, float]:
-    """Return the scalars of masses by their names in the registry; not a number where a density is not known.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it was given.
-    """
+    """Return the scalars of masses of a drive as it was given; not a number where a density is not known."""
     masses = drive_masses(drive)
-    disc, reflected = masses.of(DISCS)[0], reflected_inertia(drive, masses)
-    static, couple = _left(masses.unbalance)
-    return {
-        "mass": masses.total / TONNE_PER_KG,
-        "disc_mass": disc.mass / TONNE_PER_KG,
-        "disc_inertia": disc.about_own_axis / INERTIA,
-        "static_unbalance": abs(static) / GRAM,
-        "couple_unbalance": abs(couple) / GRAM,
-        "reflected_inertia_input": nan if reflected is None else reflected.at_input / INERTIA,
-        "reflected_inertia_output": nan if reflected is None else reflected.at_output / INERTIA,
-    }
-
-
-def _left(found: Unbalance) -> tuple[complex, complex]:
-    """Static unbalance and couple, nothing where they are round-off."""
-    whole = float(abs(found.discs).sum())
-    reach = float(abs(found.discs) @ abs(found.planes))
-    static, couple = found.static, found.couple
-    return (
-        0j if abs(static) <= BALANCED * whole else static,
-        0j if abs(couple) <= BALANCED * max(reach, whole) else couple,
+    disc, unbalance, reflected = masses.of(DISCS)[0], masses.unbalance, reflected_inertia(drive, masses)
+    values = (
+        masses.total / TONNE_PER_KG,
+        disc.mass / TONNE_PER_KG,
+        disc.about_own_axis / INERTIA,
+        abs(unbalance.static) / GRAM,
+        abs(unbalance.couple) / GRAM,
+        nan if reflected is None else reflected.at_input / INERTIA,
+        nan if reflected is None else reflected.at_output / INERTIA,
     )
+    return dict(zip(NAMES, values, strict=True))
 
 
 def mass_rows(drive: Drive) -> list[tuple[str, str]]:
-    """Return masses, unbalance and inertias as names and texts; what a density is missing for is told.
-
-    Parameters
-    ----------
-    drive : Drive
-        As it was given.
-    """
-    masses = drive_masses(drive)
-    given = drive.inertia is not None and drive.inertia.crank_mass is not None
-    cranks = ", given" if given else ", solid eccentrics and shafts"
-    rows = [
-        (f"mass of {group}{cranks if group == CRANKS else ''}", _mass_words(masses, group))
-        for group in masses.groups
-        if not isnan(masses.mass_of(group))
-    ]
+    """Return masses, unbalance and inertias of a drive as names and texts, and the densities that are not known."""
+    masses, given = drive_masses(drive), drive.inertia
+    rows = []
+    for group in masses.groups:
+        mass, count = masses.mass_of(group), len(masses.of(group))
+        name = f"mass of {group}"
+        if group == CRANKS:
+            count = drive.crank.number
+            name += ", solid eccentrics and shafts" if given is None or given.crank_mass is None else ", given"
+        if not isnan(mass):
+            each = "" if count == 1 else f", {count} of {mass / count / TONNE_PER_KG:.5g} kg"
+            rows.append((name, f"{mass / TONNE_PER_KG:.5g} kg{each}"))
     discs = masses.of(DISCS)
     disc, of = discs[0], " 0" if len(discs) > 1 else ""
     if not isnan(disc.mass):
@@ -88,22 +66,15 @@ def mass_rows(drive: Drive) -> list[tuple[str, str]]:
     return rows
 
 
-def _mass_words(masses: DriveMasses, group: str) -> str:
-    mass, parts = masses.mass_of(group), masses.of(group)
-    count = masses.drive.crank.number if group == CRANKS else len(parts)
-    each = "" if count == 1 else f", {count} of {mass / count / TONNE_PER_KG:.5g} kg"
-    return f"{mass / TONNE_PER_KG:.5g} kg{each}"
-
-
 def _unbalance_rows(found: Unbalance) -> list[tuple[str, str]]:
     if np.isnan(found.discs).any():
         return []
-    static, couple = _left(found)
     beside = "" if found.eccentrics else ", eccentrics left out"
     each = ", ".join(_polar(one, "g·mm") for one in found.discs.tolist())
     rows = [(f"unbalance of each disc at its phase{beside}", each)]
     if len(found.discs) > 1:
-        rows.append(("unbalance of all discs", f"{_polar(static, 'g·mm')}; couple {_polar(couple, 'g·mm²')}"))
+        together = f"{_polar(found.static, 'g·mm')}; couple {_polar(found.couple, 'g·mm²')}"
+        rows.append(("unbalance of all discs", together))
     return rows
 
 
@@ -116,14 +87,12 @@ def _polar(value: complex, unit: str) -> str:
 
 
 def _inertia_rows(drive: Drive, masses: DriveMasses) -> list[tuple[str, str]]:
-    found = reflected_inertia(drive, masses)
-    if found is None:
-        return []
-    rows = []
-    for side, own, given in (
-        ("input", found.at_input, found.given_input),
-        ("output", found.at_output, found.given_output),
-    ):
-        beside = f", with the given {given / INERTIA:.5g} kg·m² beside it" if given else ""
-        rows.append((f"inertia of the drive referred to the {side}", f"{own / INERTIA:.5g} kg·m²{beside}"))
+    found, rows = reflected_inertia(drive, masses), []
+    if found is not None:
+        for side, own, given in (
+            ("input", found.at_input, found.given_input),
+            ("output", found.at_output, found.given_output),
+        ):
+            beside = f", with the given {given / INERTIA:.5g} kg·m² beside it" if given else ""
+            rows.append((f"inertia of the drive referred to the {side}", f"{own / INERTIA:.5g} kg·m²{beside}"))
     return rows

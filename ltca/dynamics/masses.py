@@ -38,6 +38,8 @@ POINTS_PER_WAVE = 12
 GAUSS = np.polynomial.legendre.leggauss(4)
 """Places over (−1, 1) and weights between heights at which a lead changes its law: a lead is a square there, second moments of
 the section have its fourth power, and z² comes to it."""
+BALANCED = 1e-9
+"""Part of the unbalance of all discs, taken one by one, below which their sum is round-off."""
 DISCS, WHEEL_PINS, SHAFT_PINS, ROLLERS, CRANKS, RING, POSTS = (
     "discs", "wheel pins", "shaft pins", "rollers", "cranks", "ring", "posts",
 )  # fmt: skip
@@ -149,13 +151,15 @@ class Unbalance:
 
     @property
     def static(self) -> complex:
-        """Sum over all discs, t·mm."""
-        return complex(self.discs.sum())
+        """Sum over all discs, t·mm; 0 where it is round-off."""
+        total = complex(self.discs.sum())
+        return 0j if abs(total) <= BALANCED * abs(self.discs).sum() else total
 
     @property
     def couple(self) -> complex:
-        """Moment of the unbalances about the zero of the planes, t·mm²."""
-        return complex(self.planes @ self.discs)
+        """Moment of the unbalances about the zero of the planes, t·mm²; 0 where it is round-off."""
+        total, sizes = complex(self.planes @ self.discs), abs(self.discs)
+        return 0j if abs(total) <= BALANCED * max(sizes @ abs(self.planes), sizes.sum()) else total
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -374,7 +378,9 @@ def _cranks(drive: Drive, discs: Sequence[Single]) -> Iterator[Solid]:
         for crank, centre in enumerate(place.race_centres(np.zeros(1))[0].tolist()):
             name, section = f"eccentric {disc} of crank {crank}", circle_section(radius, centre)
             yield _solid(drive, name, CRANKS, material, section, ends, disc=disc, crank=crank)
-    for piece, ends in enumerate([] if support is None else _beside(support.positions, sorted(taken))):
+    if support is None:
+        return
+    for piece, ends in enumerate(_beside(support.positions, sorted(taken))):
         for crank, axis in enumerate(discs[0][1].crank_axes.tolist()):
             name, section = f"shaft {piece} of crank {crank}", circle_section(0.5 * support.diameter, axis)
             yield _solid(drive, name, CRANKS, material, section, ends, crank=crank)

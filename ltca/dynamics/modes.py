@@ -14,9 +14,9 @@ import numpy as np
 from scipy.linalg import LinAlgError, cholesky, eigh
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.dynamics.kinetics import Body, Motion
+from ltca.dynamics.kinetics import INPUT, OUTPUT, Body, Motion
 from ltca.errors import ConvergenceError
-from ltca.geometry.coordinates import DISC_ROTATION, X, Y
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
 
 MASSLESS = 1e-10
 """Mass by the largest one, each coordinate by its own, below which a combination of coordinates has none."""
@@ -33,16 +33,9 @@ ALONG = 0.8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
-    """Modes at one position.
+    """Modes at one position: ω² ascending, 1/s², and coordinates of each as a column, mm and rad, mass-normalised (t·mm²).
 
-    Attributes
-    ----------
-    square : array, shape (modes,)
-        ω², 1/s², ascending; of a drive that turns freely the first is that of the turning, about 0 of either sign.
-    shapes : array, shape (coordinates, modes)
-        Coordinates of each mode, mm and rad, mass-normalised: :math:`x^T M x = 1` t·mm².
-    turns_freely : bool
-        Whether the first one is the turning of the whole drive, no vibration.
+    Where a drive turns freely the first is the turning of the whole drive, no vibration; its square is about 0 of either sign.
     """
 
     square: FloatArray
@@ -59,38 +52,20 @@ class Modes:
 
 
 def free_coordinates(row: FloatArray, lever: FloatArray) -> FloatArray:
-    """Return columns that span all motions, as displacements, under which a row is zero, shape (n, n − 1); all for a zero row.
+    """Return columns that span all motions under which a row is zero, shape (n, n − 1); all for a zero row.
 
-    Parameters
-    ----------
-    row : array, shape (n,)
-        By the coordinates.
-    lever : array, shape (n,)
-        Lengths by which coordinates are displacements, mm.
+    They are displacements by `lever`, the lengths by which coordinates are, mm, shape (n,).
     """
-    scaled = row / lever
-    if not np.any(scaled):
+    if not np.any(row):
         return np.diag(1.0 / lever)
-    _, _, basis = np.linalg.svd(scaled[None])
+    basis = np.linalg.svd((row / lever)[None])[2]
     return np.asarray(basis[1:].T / lever[:, None])
 
 
 def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigid: FloatArray | None) -> Modes:
-    """Return the modes of a drive at one position.
+    """Return the modes of a drive at one position; ConvergenceError where it is not stable.
 
-    Parameters
-    ----------
-    stiffness, mass : array, shape (n, n)
-        K and M.
-    basis : array, shape (n, m)
-        Motions that are free.
-    rigid : array, shape (n,), or None
-        Turning of the whole drive, where it is free.
-
-    Raises
-    ------
-    ConvergenceError
-        When the drive is not stable where it stands.
+    `basis` spans the motions that are free, shape (n, m); `rigid` is the turning of the whole drive where it is free, shape (n,).
     """
     k, m = basis.T @ stiffness @ basis, basis.T @ mass @ basis
     own = np.sqrt(np.maximum(np.diag(m), 0.0))
@@ -115,78 +90,53 @@ def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigi
         # The turning may be faster than the softest vibration where its stiffness is that of the transmission error.
         overlap = np.abs(rigid @ mass @ shapes)
         turning = int(np.argmax(overlap))
-        order = np.concatenate(([turning], np.delete(np.arange(square.size), turning)))
+        order = np.r_[turning, np.delete(np.arange(square.size), turning)]
         square, shapes = square[order], shapes[:, order]
     return Modes(square=square, shapes=shapes, turns_freely=rigid is not None)
 
 
 def energy_shares(bodies: Sequence[Body], shape: FloatArray) -> dict[str, float]:
-    """Return the part of the kinetic energy of a mode by what moves and how, largest first.
-
-    Parameters
-    ----------
-    bodies : sequence of Body
-        Every body that moves.
-    shape : array, shape (n,)
-        Coordinates of the mode.
-    """
+    """Return the part of the kinetic energy of a mode by what moves and how, largest first."""
     found: dict[str, float] = {}
     for body in bodies:
         name = "discs" if body.name.startswith("disc") else body.name
         key = f"{name} {'lean' if body.leans else 'turn' if body.turns else 'move'}"
         found[key] = found.get(key, 0.0) + body.size * float(abs(body.row @ shape) ** 2)
     total = sum(found.values())
-    return dict(sorted(((name, size / total) for name, size in found.items()), key=lambda one: -one[1]))
+    return {name: found[name] / total for name in sorted(found, key=lambda name: -found[name])}
 
 
 def mode_words(motion: Motion, bodies: Sequence[Body], shape: FloatArray, eccentric: ComplexArray) -> str:
-    """Return what moves in a mode, in words, with its part of the kinetic energy.
-
-    Parameters
-    ----------
-    motion : Motion
-        Coordinates.
-    bodies : sequence of Body
-        Every body that moves.
-    shape : array, shape (n,)
-        Coordinates of the mode.
-    eccentric : array of complex, shape (discs,)
-        Directions of the eccentricities.
+    """Return what moves in a mode, in words, with its part of the kinetic energy; `eccentric` are the directions of the
+    eccentricities of all discs.
     """
     told = []
     for name, share in list(energy_shares(bodies, shape).items())[:MOST_TOLD]:
-        if share < TOLD:
-            continue
-        words = name
-        if name.startswith("discs"):
-            words = _of_discs(motion, shape, eccentric, name.removeprefix("discs "))
-        elif name.startswith(("input", "output")):
-            words = f"{name}s"
-        told.append(f"{words} ({100.0 * share:.0f} %)")
+        if share >= TOLD:
+            what, how = name.rsplit(" ", 1)
+            words = _of_discs(motion, shape, eccentric, how) if what == "discs" else name
+            told.append(f"{words}{'s' if what in (INPUT, OUTPUT) else ''} ({100.0 * share:.0f} %)")
     return ", ".join(told)
 
 
-def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, verb: str) -> str:
+def _of_discs(motion: Motion, shape: FloatArray, eccentric: ComplexArray, how: str) -> str:
     """How the discs of a mode move, turn or lean: which, along or across their eccentricities, together or against each other."""
-    own = [motion.pose.columns(disc) for disc in range(motion.pose.discs)]
-    if verb == "turn":
-        moved = np.array([complex(shape[one[DISC_ROTATION]]) for one in own])
+    own = np.array([shape[motion.pose.columns(disc)] for disc in range(motion.pose.discs)])
+    if how == "turn":
+        moved = own[:, DISC_ROTATION].astype(complex)
     else:
-        places = (X, Y) if verb == "move" else tuple(range(motion.pose.own))[motion.pose.lean_place]
-        moved = np.array([shape[one[places[0]]] + 1j * shape[one[places[1]]] for one in own])
+        x, y = own[:, DISC_PLACE if how == "move" else motion.pose.lean_place].T
+        moved = x + 1j * y
     sizes = np.abs(moved)
-    several = sizes > 0.5 * sizes.max()
-    names = "disc" if moved.size == 1 else "discs"
-    if moved.size > 1 and np.count_nonzero(several) == 1:
-        names = f"disc {int(np.argmax(sizes))}"
-    words = f"{names} {verb}" if names == "discs" else f"{names} {verb}s"
-    if verb != "turn" and sizes.max() > 0.0:
+    alone = np.count_nonzero(sizes > 0.5 * sizes.max()) == 1
+    several = moved.size > 1 and not alone
+    one = "disc" if moved.size == 1 else f"disc {int(np.argmax(sizes))}"
+    words = f"discs {how}" if several else f"{one} {how}s"
+    if how != "turn" and sizes.max() > 0.0:
         along = np.sum((moved * eccentric.conjugate()).real ** 2) / np.sum(sizes**2)
-        words += (
-            " along its eccentricity" if along > ALONG else " across its eccentricity" if along < 1.0 - ALONG else ""
-        )
-        words = words.replace("its eccentricity", "their eccentricities") if names == "discs" else words
-    if names == "discs":
+        of = "their eccentricities" if several else "its eccentricity"
+        words += f" along {of}" if along > ALONG else f" across {of}" if along < 1.0 - ALONG else ""
+    if several:
         pair = (moved[0].conjugate() * moved[1:]).real.sum() / max(sizes[0] * sizes[1:].sum(), 1e-300)
         words += " together" if pair > ALIKE else " against each other" if pair < -ALIKE else ""
     return words

@@ -28,27 +28,16 @@ STEP = 1e-5
 
 
 def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> FloatArray:
-    """Return the stiffness at balanced positions, N/mm, N and N·mm by coordinates in mm and rad, shape (positions, n, n).
-
-    Parameters
-    ----------
-    model : Reducer
-        That balanced them, without friction.
-    motion : Motion
-        Coordinates.
-    found : Equilibrium
-        Balanced positions.
+    """Return the stiffness at positions that a model without friction balanced, N/mm, N and N·mm by coordinates in mm and rad,
+    shape (positions, n, n).
     """
     angle, pose, start = found.crank_angle, found.pose, Start.after(found.response)
-    contacts = replace(model, stage=None, friction=None, external=None)
-    lever = np.broadcast_to(lever_arms(model), pose.shape)
-    tangent = contacts.whole_tangent(angle, pose, start, lever)
-    if model.stage is not None and model.supports is not None:
+    contacts = replace(model, supports=None, stage=None, friction=None, external=None)
+    tangent = contacts.whole_tangent(angle, pose, start, np.broadcast_to(lever_arms(model), pose.shape))
+    if model.supports is not None:
         # What bearings of cranks with clearance or preload yield depends on all that they carry.
         carried = model.carried_beside_discs(angle, pose, found.response.parts)
-        if carried is not None:
-            supports = model.supports
-            tangent = tangent + supports.respond(pose, carried)[1] - supports.respond(pose)[1]
+        tangent = tangent + model.supports.respond(pose, carried)[1]
     ends = []
     for sense in (-1.0, 1.0):
         turned = angle + sense * STEP
@@ -79,24 +68,11 @@ def crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, respo
     return np.asarray(moment + response.force[:, WHEEL_ANGLE] / ratio)
 
 
-def levers(model: Reducer, motion: Motion, lever: FloatArray) -> FloatArray:
-    """Return the lengths by which coordinates are displacements, mm, shape (n,): 1 of displacements.
-
-    Parameters
-    ----------
-    model : Reducer
-        Whose poses they are.
-    motion : Motion
-        Coordinates.
-    lever : array, shape (pose,)
-        Of the pose (`ltca.equilibrium.balance.lever_arms`).
-    """
-    found = np.ones(motion.size)
-    found[: motion.pose.size] = lever
-    eccentricity = float(model.discs[0].geometry.placement.mean_eccentricity.ravel()[0])
-    found[motion.crank] = eccentricity
-    if motion.sun is not None:
-        found[motion.sun] = eccentricity
+def levers(model: Reducer, motion: Motion) -> FloatArray:
+    """Return the lengths by which coordinates of one drive are displacements, mm, shape (n,): 1 of displacements."""
+    pose = np.atleast_2d(lever_arms(model))[0]
+    found = np.full(motion.size, float(model.discs[0].geometry.placement.mean_eccentricity.ravel()[0]))
+    found[: pose.size] = pose
     if motion.twist is not None:
-        found[motion.twist] = lever[-1]
+        found[motion.twist] = pose[-1]
     return found

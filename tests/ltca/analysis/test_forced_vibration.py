@@ -47,10 +47,14 @@ def usual():
     return vibration(drive, engine=HalfSpace(), positions=24, turns=4)
 
 
+def constant(stiffness, positions):
+    """A stiffness that does not pulse."""
+    return PulsatingStiffness(over_turn=np.broadcast_to(stiffness, (positions, *stiffness.shape)))
+
+
 def with_mean_stiffness(found):
     """Vibrations whose stiffness does not pulse."""
-    positions, *_ = found.stiffness.over_turn.shape
-    return replace(found, stiffness=PulsatingStiffness.constant(found.stiffness.mean, positions))
+    return replace(found, stiffness=constant(found.stiffness.mean, len(found.stiffness.over_turn)))
 
 
 def amplification(part):
@@ -103,7 +107,7 @@ def test_centrifugal_forces_by_hand(usual):
 def test_centrifugal_forces_are_held_by_the_springs(usual):
     """What they displace is that of the stiffness, to first order of the square of the speed."""
     mean = usual.stiffness.mean
-    still = _system(replace(usual, stiffness=PulsatingStiffness.constant(mean, 8)))
+    still = _system(replace(usual, stiffness=constant(mean, 8)))
     orders, resting = np.arange(1.0, 4.0), np.zeros((mean.shape[0], 3), dtype=complex)
     outward = still.respond(1.0, orders, _force(still, 1.0, orders, resting, _nominal_forces(usual)))[0].real
     held = usual.basis.T @ mean @ outward
@@ -274,7 +278,7 @@ def test_seen_from_the_crank_orders_are_one_apart(usual):
     alike = replace(
         usual,
         mean_mass=mass * np.eye(size),
-        stiffness=PulsatingStiffness.constant(stiffness * np.eye(size), 16),
+        stiffness=constant(stiffness * np.eye(size), 16),
         drive=with_fields(PAPER, {"damping.ratio": 1e-9}),
     )
     for sense, order in ((1.0, 4.0), (-1.0, 2.0)):

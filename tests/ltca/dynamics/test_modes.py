@@ -69,7 +69,7 @@ def position_of(drive, angle=0.3):
     stiffness, mass = stiffness_matrices(model, motion, found)[0], mass_matrix(bodies)
     free = drive.inertia is not None and drive.inertia.input is not None
     row = np.zeros(motion.size) if free else motion.input_turns
-    basis = free_coordinates(row, levers(model, motion, np.atleast_2d(lever_arms(model))[0]))
+    basis = free_coordinates(row, levers(model, motion))
     modes = solve_modes(stiffness, mass, basis, motion.rigid if free else None)
     return model, motion, bodies, stiffness, mass, modes
 

@@ -28,7 +28,6 @@ from ltca.dynamics.masses import CRANKS, DISCS, drive_masses
 from ltca.dynamics.modes import solve_modes
 from ltca.dynamics.motion import Equation
 from ltca.dynamics.stiffness import crank_force, levers, stiffness_matrices
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DamagedFileError, DriveError
 from ltca.reading.changes import with_fields
@@ -339,7 +338,7 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tmp_path):
     x = np.zeros(motion.size)
     x[: motion.pose.size], x[motion.crank] = still.pose[0] * 1.04, 0.3
     contacts, at_rest = ContactForces(model, motion, 1.0), np.zeros(motion.size)
-    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    lever = levers(model, motion)
     way = rng.standard_normal(motion.size) / lever
     way[motion.crank] = 1.0  # contacts move along the flank and round the bore with it
     force = contacts.at(x, at_rest).force
@@ -590,7 +589,7 @@ def test_stiffness_in_motion_leaves_out_what_forces_add_as_they_turn(name):
     contacts, at_rest = ContactForces(model, motion, 1.0), np.zeros(motion.size)
     x = np.zeros(motion.size)
     x[: motion.pose.size], x[motion.crank] = still.pose[0], 0.3
-    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    lever = levers(model, motion)
     found = contacts.at(x, at_rest).stiffness / np.outer(lever, lever)
     assert found == pytest.approx(found.T, abs=1e-12 * np.abs(found).max())
     slopes = [

@@ -25,7 +25,6 @@ from ltca.dynamics.kinetics import Body, Motion, _leaning, mass_matrix, moving_b
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import solve_modes
 from ltca.dynamics.stiffness import levers, stiffness_matrices
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -203,7 +202,7 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tilt_depth, tmp_path):
     x = np.zeros(motion.size)
     x[: motion.pose.size], x[motion.crank] = still.pose[0] * 1.05, 0.3
     contacts, at_rest = ContactForces(model, motion, 1.0), np.zeros(motion.size)
-    lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    lever = levers(model, motion)
     way = rng.standard_normal(motion.size) / lever
     way[motion.crank] = 1.0
     force = contacts.at(x, at_rest).force
@@ -253,7 +252,7 @@ def test_stiffness_in_slices_is_that_in_the_plane():
         model, motion, still = balanced(name, 0.3)
         x = np.append(still.pose[0], 0.3)
         contacts = ContactForces(model, motion, 1.0)
-        lever = levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+        lever = levers(model, motion)
         stiffness = contacts.at(x, np.zeros(motion.size)).stiffness / np.outer(lever, lever)
         rest = np.delete(np.arange(motion.size), leans_of(motion)) if name == "aligned" else np.arange(motion.size)
         found.append(stiffness[np.ix_(rest, rest)])

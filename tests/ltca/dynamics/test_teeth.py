@@ -16,7 +16,6 @@ from ltca.dynamics.contact_forces import ContactForces
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.stiffness import levers
 from ltca.dynamics.teeth import Teeth
-from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import DriveError
@@ -133,7 +132,7 @@ def test_forces_are_slopes_of_what_is_stored(name):
     x[: motion.pose.size], x[motion.crank] = still.pose[0] * 1.05, 0.3
     x[motion.sun] = 0.3 - 1.1 * crank_lag(model, still)[0]
     contacts, at_rest = ContactForces(model, motion, 1.0), np.zeros(motion.size)
-    way = rng.standard_normal(motion.size) / levers(model, motion, np.atleast_2d(lever_arms(model))[0])
+    way = rng.standard_normal(motion.size) / levers(model, motion)
     force = contacts.at(x, at_rest).force
 
     def slopes(step):
