@@ -646,7 +646,7 @@ class Recorder:
             curvature, stations = (
                 float(self.arrays[name][row - 1]) if row else 0.0 for name in ("curvature", "stations")
             )
-            stored, discs_store = contacts.stored(x)
+            stored, discs_store = contacts.stored(x, now)
             for before, there in zip(self._before, discs_store, strict=row > 0):
                 by_radius, by_place = before.work_to(there)
                 curvature, stations = curvature + float(by_radius[0]), stations + float(by_place[0])
@@ -706,7 +706,7 @@ class Recorder:
         # What one call at the state leaves has the structure of what is kept.
         moment = equation.solved(checkpoint.time, checkpoint.state)
         if equation.contacts.has_energy:
-            self._before = equation.contacts.stored(moment.place)[1]
+            self._before = equation.contacts.stored(moment.place, moment.forces)[1]
         self._teeth = moment.forces.teeth
         try:
             inner = with_named_arrays(equation.warm_start(), checkpoint.followed, "inner")

@@ -1,16 +1,10 @@
-r"""Kinetic energy of a drive in motion over the coordinates of `ltca.dynamics.kinetics.Motion`, and its inertia forces.
+r"""Kinetic energy of a drive in motion, and its inertia forces (``docs/theory/motion.md``).
 
 Every body has the velocity :math:`z = r(\varphi)\dot x + i\,(f\dot x)\,D(\varphi)x`: what its row gives at the place where it
 nominally stands, and what the turning frame of a held wheel adds because the pose displaces it there. Rows are
-:math:`a + c\,e^{i\varphi}`, since eccentrics go round and nothing else does. Lagrange's equations of
-:math:`T = \tfrac12 \dot x^T M(x) \dot x` have all its terms, centrifugal and Coriolis ones included, so that the energy of a
-motion closes:
-
-.. math:: \frac{d}{dt}\frac{\partial T}{\partial\dot x} - \frac{\partial T}{\partial x}
-   = M\ddot x + \dot M\dot x - \frac{\partial T}{\partial x} .
-
-A disc that leans by l in a frame which turns brings its transverse moments of inertia and, because it spins at
-:math:`\nu\dot x` about its leaning axis, a gyroscopic moment: to second order in l, J being that about its own axis,
+:math:`a + c\,e^{i\varphi}`, since eccentrics go round and nothing else does. Inertia forces are those of Lagrange's equations,
+:math:`M\ddot x + \dot M\dot x - \partial T/\partial x`. A disc that leans by l in a frame which turns, and spins at
+:math:`\nu\dot x` about its leaning axis, adds to second order in l, J being its moment of inertia about that axis,
 
 .. math:: T_g = -\tfrac12 J\,(\nu\dot x)\left[(f\dot x)\,|l|^2 + l \times \dot l\right] .
 """

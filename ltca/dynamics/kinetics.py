@@ -1,17 +1,13 @@
-r"""Kinetic energy of a drive over the coordinates of its reducer, and what it comes to at input and output.
+r"""Coordinates of a drive in motion, its mass matrix, and its inertia referred to input and output.
 
 Velocities are those in the frame of the held member. In the frame of the pin shaft stand discs, cranks and wheel
 (`ltca.geometry.coordinates`); the crank angle :math:`\varphi_C` is a coordinate as well, the sun where teeth of a first stage
 yield, and the twist of the carrier where it has one. The frame itself turns by the twist where the pin shaft is held, and by
 :math:`-(\varphi_C/u + w)` where the wheel is held, whose displacements and angle w are those relative to the shaft. Each body
-brings a row of its velocity z and one of its rotation, and the mass matrix is
-
-.. math:: M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r .
+brings rows z and r of its velocity and its rotation to :math:`M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r`.
 
 Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts
-are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Where contacts
-have slices discs lean, with their transverse moments of inertia; leans of cranks and wheel have none and follow as springs do.
-Frozen at a crank angle: accelerations by the square of the speed (centrifugal and Coriolis terms) are no part of it.
+are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Leans of cranks and wheel have no mass.
 """
 
 from __future__ import annotations

@@ -1,17 +1,10 @@
-r"""Coordinates of parts that yield and have no mass: they follow all others as springs do.
+r"""Coordinates of parts that yield and have no mass: they follow all others as springs do (``docs/theory/motion.md``).
 
-A file gives no mass to the ring that ties the tips of shaft pins, nor to the far flange of a carrier; leans of cranks and of the
-wheel are so stiff for what they move (some 100 kHz) that theirs is left out. Such coordinates
-:math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`, and move with
-the others so that f stays zero,
-
-.. math:: \dot z = -(N^T K N)^{-1} \dot f|_z .
-
-What is stored is then the least energy over z, whose slopes by the other coordinates are the forces at that place: the
-balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on :math:`\dot z`.
-There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere nothing
-feels the rates, and :math:`N^T K \dot x` of the stiffness K serves. Modes do likewise with parts without mass
-(`ltca.dynamics.modes`).
+Such coordinates :math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`,
+and move with the others so that f stays zero, :math:`\dot z = -(N^T K N)^{-1} \dot f|_z`. What is stored is then the least energy
+over z: the balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on
+:math:`\dot z`. There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere
+nothing feels the rates, and :math:`N^T K \dot x` of the stiffness K serves.
 """
 
 from __future__ import annotations
@@ -34,25 +27,14 @@ STEPS, HALVINGS = 60, 12
 """Steps tried, and how often one is halved that leaves more than there was."""
 
 Respond = Callable[[FloatArray, FloatArray], tuple[Instant, FloatArray]]
-"""Forces at coordinates and their rates, and what presses from outside."""
+"""Forces at coordinates and their rates, and ∂U/∂x + R − Q."""
 
 
 class MasslessParts:
-    """Parts without mass, followed in time.
+    """Parts without mass, followed in time: N as columns, shape (n, k), mm and rad by mm, and where they begin, mm, shape (k,).
 
-    Parameters
-    ----------
-    columns : array, shape (n, k)
-        N, mm and rad by mm.
-    place : array, shape (k,)
-        Where they begin, mm.
-    rubs : bool
-        Whether friction or forces from outside act on them.
-
-    Attributes
-    ----------
-    warm_start : tuple
-        Places, slopes, coordinates of the others and rates of the last call, from which the next one starts.
+    `rubs` tells whether friction or forces from outside act on them; `warm_start` has places, slopes, coordinates of the others
+    and rates of the last call, from which the next one starts.
     """
 
     def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:
@@ -64,17 +46,7 @@ class MasslessParts:
     ) -> tuple[FloatArray, FloatArray, Instant, FloatArray]:
         """Return coordinates and rates of all, each of shape (n,), the forces there, and ∂z/∂x, shape (k, n).
 
-        Parameters
-        ----------
-        others, rate : array, shape (n,)
-            Coordinates and rates without these parts.
-        respond : callable
-            Returns the forces.
-
-        Raises
-        ------
-        ConvergenceError
-            Where they find no balance.
+        `others` and `rate` are coordinates and rates without these parts. ConvergenceError where they find no balance.
         """
         columns = self.columns
         place, slope, before_others, before_rates = self.warm_start
@@ -85,28 +57,24 @@ class MasslessParts:
         # Last rates are those of a hair before: what K misses of the slope of f, friction above all, counts for their change.
         following = before_rates if onward else slope @ rate
         moving = rate + columns @ following
-
-        def left_over(now: Instant, outer: FloatArray) -> FloatArray:
-            return np.asarray(columns.T @ (now.force + now.friction - outer))
-
-        ahead = left_over(*respond(others + columns @ place + onward * moving, moving)) if onward else None
+        ahead = respond(others + columns @ place + onward * moving, moving)[1] if onward else None
         step: FloatArray = np.zeros(place.size)
         before, halved = np.inf, 0
         history: list[float] = []
         for _ in range(STEPS):
-            now, outer = respond(others + columns @ place, moving)
-            left = left_over(now, outer)
+            now, unbalanced = respond(others + columns @ place, moving)
+            left = columns.T @ unbalanced
             if (size := float(np.linalg.norm(left))) > before and halved < HALVINGS:
                 step, halved = 0.5 * step, halved + 1
                 place = place + step
                 continue
             pressed = columns.T @ now.stiffness
-            changes = (pressed, left[:, None]) if ahead is None else (pressed, left[:, None], ahead[:, None])
-            solved = np.asarray(np.linalg.solve(pressed @ columns, np.hstack(changes)), dtype=float)
-            count = columns.shape[0]
-            slope, step, before, halved = -solved[:, :count], solved[:, count], size, 0
+            matrix = pressed @ columns
+            slope = -np.asarray(np.linalg.solve(matrix, pressed), dtype=float)
+            step, before, halved = np.asarray(np.linalg.solve(matrix, left), dtype=float), size, 0
             if ahead is not None:
-                following, ahead = following + (step - solved[:, count + 1]) / onward, None
+                following = following + (step - np.linalg.solve(matrix, columns.T @ ahead)) / onward
+                ahead = None
             elif not onward:
                 following = slope @ rate
             moving, place = rate + columns @ following, place - step

@@ -1,18 +1,14 @@
-r"""Motion of a drive in time: Lagrange's equations on the contacts' own laws.
+r"""Motion of a drive in time: Lagrange's equations on the contacts' own laws (``docs/theory/motion.md``).
 
 Coordinates are :math:`x = B y + g\,s(t)`: s the angle of the input, g the rigid motion of all parts by it, and y what departs
 from that. Where the input turns as it is told, B spans the motions that leave it still; where a torque drives it, B spans all.
 
 .. math:: B^T (M\ddot x + h(x, \dot x) + \partial U/\partial x + R + C\dot x - Q) = 0
 
-with inertia forces h (`ltca.dynamics.kinetic_energy`), forces of contacts and supports, friction R
-(`ltca.dynamics.contact_forces`), and torques Q at both ends with forces from outside. Parts without mass follow
-(`ltca.dynamics.massless`). Damping is that of every vibration about the state of the moment alike, with the ratio ζ: of modes
-:math:`\Phi` with frequencies ω under the stiffness K of the contacts that are closed,
+with inertia forces h, friction R, and torques Q at both ends with forces from outside. With the modes Φ under the stiffness K of
+the contacts that are closed, their frequencies ω and the damping ratio ζ,
 
-.. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K ,
-
-which takes energy from changes of the contacts' forces only: none in a free flight, and next to none from a slow motion.
+.. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K .
 
 Beside y and its rate the state has the works of input, output, damping and friction, N·mm.
 """
@@ -21,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -59,30 +56,11 @@ class Moment(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Equation:
-    """Equation of motion of a drive.
+    """Equation of motion of a drive over n coordinates.
 
-    Attributes
-    ----------
-    kinetic : KineticEnergy
-        Of all bodies.
-    contacts : ContactForces
-        Contacts and supports.
-    basis : array, shape (n, m)
-        B, mm and rad by mm.
-    lead : array, shape (n,)
-        g, by rad of the input.
-    input_turns, output_turns : array, shape (n,)
-        Rows of the rotations of both ends.
-    input_motion : callable
-        s and its rates at a time, rad.
-    output_torque : callable
-        Torque on the output at a time, ccw positive, N·mm.
-    input_torque : float or None
-        Torque that drives the input, ccw positive, N·mm; None where it turns as told.
-    damping_ratio : float
-        ζ; 0 for none.
-    massless : MasslessParts or None
-        Motions of parts without mass, which B leaves out.
+    `basis` is B, mm and rad by mm, shape (n, m), `lead` is g, by rad of the input, shape (n,); the turns of both ends are rows.
+    `input_motion` tells s and its rates at a time, rad, `output_torque` the torque on the output; torques are ccw positive, N·mm,
+    that at the input None where it turns as told. B leaves out the motions of parts without mass.
     """
 
     kinetic: KineticEnergy
@@ -118,19 +96,19 @@ class Equation:
         if self.massless is not None:
             self.massless.warm_start = kept[1]
 
-    def _moment(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray, Instant | None, FloatArray]:
-        """x, its rate, the forces where they are known already, and B with what follows its motions."""
+    def _pushed(self, time: float, x: FloatArray, rate: FloatArray) -> tuple[Instant, FloatArray]:
+        """Forces at coordinates and rates, and their sum without inertia and damping, ∂U/∂x + R − Q."""
+        now = self.contacts.at(x, rate)
+        loaded = self.output_torque(time) * self.output_turns + now.outside
+        return now, now.force + now.friction - loaded
+
+    def _moment(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray, Instant, FloatArray]:
+        """x, its rate, the forces, and B with what follows its motions."""
         m, (angle, speed, _) = self.freedoms, self.input_motion(time)
         x, rate = self.basis @ state[:m] + self.lead * angle, self.basis @ state[m : 2 * m] + self.lead * speed
         if self.massless is None:
-            return x, rate, None, self.basis
-        torque = self.output_torque(time) * self.output_turns
-
-        def respond(there: FloatArray, moving: FloatArray) -> tuple[Instant, FloatArray]:
-            now = self.contacts.at(there, moving)
-            return now, torque + now.outside
-
-        x, rate, now, slope = self.massless.settle(x, rate, respond)
+            return x, rate, self.contacts.at(x, rate), self.basis
+        x, rate, now, slope = self.massless.settle(x, rate, partial(self._pushed, time))
         return x, rate, now, self.basis + self.massless.columns @ (slope @ self.basis)
 
     def rates(self, time: float, state: FloatArray) -> FloatArray:
@@ -140,31 +118,22 @@ class Equation:
     def solved(self, time: float, state: FloatArray) -> Moment:
         """Return the rate of a state, and what goes with it."""
         m, basis = self.freedoms, self.basis
-        x, rate, known_forces, followed = self._moment(time, state)
+        x, rate, now, followed = self._moment(time, state)
         mass, inertia = self.kinetic.at(x, rate)
-        now = self.contacts.at(x, rate) if known_forces is None else known_forces
         projected = basis.T @ mass @ basis
         damped = self._damping(now.stiffness, projected, followed) @ rate if self.damping_ratio else np.zeros(x.size)
         loaded = self.output_torque(time) * self.output_turns + now.outside
         told = self.input_motion(time)[2]
         inner = now.force + now.friction + damped + inertia
         outer = loaded if self.input_torque is None else loaded + self.input_torque * self.input_turns
-        known = outer - inner - mass @ self.lead * told
-        faster = _checked(dposv(projected, basis.T @ known))[
-            1
-        ]  # LAPACK itself: a system of five takes numpy ten times as long
-        if self.input_torque is None:
+        # LAPACK itself: a system of five takes numpy ten times as long.
+        faster = _checked(dposv(projected, basis.T @ (outer - inner - mass @ self.lead * told)))[1]
+        torque = self.input_torque
+        if torque is None:
             # By virtual work on the rigid motion; the input's own angle is s.
             torque = float(self.lead @ (mass @ (basis @ faster + self.lead * told) + inner - loaded))
-        else:
-            torque = self.input_torque
-        found = np.empty_like(state)
-        found[:m], found[m : 2 * m] = state[m : 2 * m], faster
-        found[2 * m] = torque * (self.input_turns @ rate)
-        found[2 * m + 1] = -(loaded @ rate)
-        found[2 * m + 2] = damped @ rate
-        found[2 * m + 3] = now.friction @ rate
-        return Moment(found, torque, now, x, rate)
+        works = torque * (self.input_turns @ rate), -(loaded @ rate), damped @ rate, now.friction @ rate
+        return Moment(np.concatenate((state[m : 2 * m], faster, works)), torque, now, x, rate)
 
     def _damping(self, stiffness: FloatArray, mass: FloatArray, basis: FloatArray) -> FloatArray:
         """C at the state of the moment, shape (n, n), of motions that parts without mass follow."""
@@ -174,35 +143,27 @@ class Equation:
         on_modes = pressed @ shapes[:, felt]
         return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
 
+    def _left_over(self, time: float, y: FloatArray) -> tuple[Instant, FloatArray]:
+        """The same in a state of `at_rest`."""
+        angle, speed, _ = self.input_motion(time)
+        return self._pushed(time, self.whole @ y + self.lead * angle, self.lead * speed)
+
     def input_torque_at_rest(self, time: float, y: FloatArray) -> float:
         """Return the torque at the input that balances a time in a state of `at_rest`, ccw positive, N·mm."""
-        angle, speed, _ = self.input_motion(time)
-        now = self.contacts.at(self.whole @ y + self.lead * angle, self.lead * speed)
-        loaded = self.output_torque(time) * self.output_turns + now.outside
-        return float(self.lead @ (now.force + now.friction - loaded))
+        return float(self.lead @ self._left_over(time, y)[1])
 
     def at_rest(self, time: float, start: FloatArray) -> FloatArray:
         """Return y of balance under the torques of a time, the input held, and the places of parts without mass, shape (m + k,).
 
         Friction is that of the slips which the rigid motion has at the speed of the input, none where the input stands.
-
-        Raises
-        ------
-        ConvergenceError
-            Where it is not found.
+        ConvergenceError where no balance is found.
         """
-        y, (angle, speed, _), whole = start.copy(), self.input_motion(time), self.whole
-        torque = self.output_torque(time) * self.output_turns
-
-        def left_over(there: FloatArray) -> tuple[FloatArray, Instant]:
-            now = self.contacts.at(whole @ there + self.lead * angle, self.lead * speed)
-            return np.asarray(whole.T @ (now.force + now.friction - torque - now.outside)), now
-
-        history: list[float] = []
+        y, whole, history = start, self.whole, list[float]()
         step: FloatArray = np.zeros(y.size)
         before, halved = np.inf, 0
         for _ in range(REST_STEPS):
-            left, now = left_over(y)
+            now, unbalanced = self._left_over(time, y)
+            left = whole.T @ unbalanced
             if (size := float(np.linalg.norm(left))) > before and halved < REST_HALVINGS:
                 step, halved = 0.5 * step, halved + 1
                 y = y + step
@@ -210,8 +171,8 @@ class Equation:
             if len(history) < REST_PLAIN:
                 matrix = whole.T @ now.stiffness @ whole
             else:
-                aside = REST_ASIDE * np.eye(y.size)
-                matrix = np.array([(left_over(y + one)[0] - left) / REST_ASIDE for one in aside]).T
+                ends = [self._left_over(time, y + aside)[1] for aside in REST_ASIDE * np.eye(y.size)]
+                matrix = whole.T @ (np.array(ends) - unbalanced).T / REST_ASIDE
             try:
                 step = np.asarray(np.linalg.solve(matrix, left), dtype=float)
             except np.linalg.LinAlgError as problem:

@@ -1,13 +1,9 @@
-r"""Stiffness of a drive about balanced positions, over the coordinates of its motion.
+r"""Stiffness of a drive about balanced positions, over the coordinates of its motion, without friction.
 
 Beside the tangent of the pose stand the derivatives by the crank angle, with which discs and wheel go along as they nominally do:
-those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The mesh of a
-first stage and the twist of a carrier are springs on these coordinates. Friction is left out: what it takes from a
-vibration is said by ``[damping]``.
-
-The tangent of the pose is the whole one (`ltca.mechanics.full_tangent`), made symmetric: contacts whose radii of curvature and
-influence coefficients follow the pose have no potential, and what is not symmetric of it, 1e-5 to 3e-4, alters frequencies by the
-square.
+those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The tangent of the
+pose is the whole one (`ltca.mechanics.full_tangent`), made symmetric: contacts whose radii of curvature and influence
+coefficients follow the pose have no potential, and what is not symmetric of it, 1e-5 to 3e-4, alters frequencies by the square.
 """
 
 from __future__ import annotations

@@ -346,8 +346,8 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tmp_path):
     def slopes(step):
         ends = []
         for side in (-1.0, 1.0):
-            contacts.at(x + side * step * way, at_rest)
-            ends.append(contacts.stored(x + side * step * way))
+            there = x + side * step * way
+            ends.append(contacts.stored(there, contacts.at(there, at_rest)))
         (low, before), (high, after) = ends
         moved = sum(np.array(one.work_to(other))[:, 0] for one, other in zip(before, after, strict=True))
         return np.append(moved, high - low) / (2.0 * step)
@@ -419,7 +419,7 @@ def test_a_flight_through_the_play_keeps_momentum_and_an_impact_energy():
         moment = equation.solved(0.0, answer.y[:, row])
         place, rate = moment.place, moment.rate
         now = contacts.at(place, rate)
-        stored, (disc,) = contacts.stored(place)
+        stored, (disc,) = contacts.stored(place, now)
         return place, rate, bool(np.any(now.force)), equation.kinetic.energy(place, rate) + stored, disc
 
     every = [at(row) for row in range(times.size)]

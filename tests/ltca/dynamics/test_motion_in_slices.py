@@ -210,8 +210,8 @@ def test_forces_are_slopes_of_what_is_stored(name, kind, tilt_depth, tmp_path):
     def slopes(step):
         ends = []
         for side in (-1.0, 1.0):
-            contacts.at(x + side * step * way, at_rest)
-            ends.append(contacts.stored(x + side * step * way))
+            there = x + side * step * way
+            ends.append(contacts.stored(there, contacts.at(there, at_rest)))
         (low, before), (high, after) = ends
         moved = sum(np.array(one.work_to(other))[:, 0] for one, other in zip(before, after, strict=True))
         return np.append(moved, high - low) / (2.0 * step)

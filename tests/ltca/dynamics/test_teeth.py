@@ -138,8 +138,9 @@ def test_forces_are_slopes_of_what_is_stored(name):
     def slopes(step):
         ends = []
         for side in (-1.0, 1.0):
-            teeth = contacts.at(x + side * step * way, at_rest).teeth
-            ends.append((*contacts.stored(x + side * step * way), teeth))
+            there = x + side * step * way
+            now = contacts.at(there, at_rest)
+            ends.append((*contacts.stored(there, now), now.teeth))
         (low, before, first), (high, after, last) = ends
         moved = sum(float(one.work_to(other)[0][0]) for one, other in zip(before, after, strict=True))
         return np.array([moved, first.work_to(last), high - low]) / (2.0 * step)
