@@ -532,11 +532,10 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
 
 
 def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
-    """Places of what ties or carries the shaft pins, a ring or the far flange of a carrier, where it has no mass, and of leans
-    of cranks and of the wheel.
+    """Places of the coordinates of the pose without mass: leans of cranks and of the wheel, and what ties or carries the shaft
+    pins, a ring or the far flange of a carrier, where none is given.
     """
-    ring = np.arange(motion.size)[motion.pose.ring_place]
-    return np.concatenate((motion.light_leans, ring[np.diag(kinetic.mass[0])[ring] == 0.0])).astype(np.intp)
+    return np.flatnonzero(np.diag(kinetic.mass[0])[: motion.pose.size] == 0.0)
 
 
 def _spans(row: FloatArray, lever: FloatArray, massless: NDArray[np.intp]) -> tuple[FloatArray, FloatArray]:

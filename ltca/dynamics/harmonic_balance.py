@@ -65,11 +65,6 @@ class PulsatingStiffness:
         """Largest order that its positions resolve."""
         return len(self.over_turn) // 2 - 1
 
-    @property
-    def amplitude(self) -> ComplexArray:
-        """K_o of Re K_o·exp(i·o·φ), orders 1, 2, …, shape (orders, n, n)."""
-        return np.asarray(2.0 * np.fft.rfft(self.over_turn, axis=0, norm="forward")[1 : self.orders + 1])
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HillSystem:
@@ -377,7 +372,9 @@ def unstable_ranges(
     Modes are those of the mean stiffness, of frequencies ω > 0, rad/s, mass-normalised, shape (n, modes), and damped alike.
     """
     found, damped = [], damping_ratio * frequency
-    growth = np.abs(shapes.T @ stiffness.amplitude @ shapes) ** 2 / (16.0 * np.multiply.outer(frequency, frequency))
+    # K_o of Re K_o·exp(i·o·φ), orders 1, 2, …
+    pulses = 2.0 * np.fft.rfft(stiffness.over_turn, axis=0, norm="forward")[1 : stiffness.orders + 1]
+    growth = np.abs(shapes.T @ pulses @ shapes) ** 2 / (16.0 * np.multiply.outer(frequency, frequency))
     excess = growth / np.multiply.outer(damped, damped) - 1.0
     for place, first, second in np.argwhere(np.triu(excess > 0.0)).tolist():
         order, middle = place + 1, frequency[first] + frequency[second]

@@ -16,7 +16,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.beam import shaft_flexibility
@@ -40,14 +39,11 @@ from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_springs
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X
-from ltca.geometry.placement import position_angles
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
 OF_SHAFT = (SHAFT_PINS, SLEEVES[SHAFT_PINS], POSTS)
 INPUT, OUTPUT, CARRIER, WHEEL = "input", "output", "carrier and shaft pins", "wheel pins"
 """Bodies beside discs, rollers and cranks, as modes name them."""
-PLACES = 4
-"""Crank angles over which the inertia of rigid parts is averaged: uneven holes make it vary by once and twice a turn."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,15 +106,6 @@ class Motion:
     def size(self) -> int:
         """Number of coordinates."""
         return self.pose.size + 1 + bool(self.mesh_compliance) + bool(self.twist_stiffness)
-
-    @property
-    def light_leans(self) -> NDArray[np.intp]:
-        """Places of the leans of cranks at the discs and of the wheel, which have no mass."""
-        pose = self.pose
-        last = pose.lean_place.start
-        of_cranks = np.arange(last - 2 * pose.cranks * pose.leans, last)
-        found = np.r_[(pose.own * np.arange(pose.discs)[:, None] + of_cranks).ravel(), pose.wheel_lean_place]
-        return np.asarray(found, dtype=np.intp)
 
     def unit(self, place: int | None) -> FloatArray:
         """Return the row of one coordinate; zeros of none."""
@@ -259,7 +246,7 @@ def reflected_inertia(drive: Drive, masses: DriveMasses | None = None) -> Reflec
     # Slices change nothing of rigid motions.
     motion = Motion.of_drive(replace(masses.drive, contact=replace(masses.drive.contact, slices=1)))
     energies = []
-    for angle in position_angles(PLACES).tolist():
+    for angle in (0.0, np.pi):  # uneven holes make it vary once a turn
         own = [body for body in moving_bodies(motion, masses, angle) if body.name not in (INPUT, OUTPUT)]
         energies.append(motion.rigid @ mass_matrix(own) @ motion.rigid)
     given, mean = drive.inertia, float(np.mean(energies))

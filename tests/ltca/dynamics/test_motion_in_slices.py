@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 import ltca
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.time_dataset import time_dataset
-from ltca.analysis.time_run import Course, prepare_run, run_in_time
+from ltca.analysis.time_run import Course, _massless, prepare_run, run_in_time
 from ltca.compliance.coefficients import load_coefficients
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
@@ -235,7 +235,10 @@ def test_leans_without_mass_are_in_balance(name):
     state[: equation.freedoms] += 1e-4 * np.random.default_rng(4).standard_normal(equation.freedoms)
     moment = equation.solved(0.0, state)
     x, rate = moment.place, moment.rate
-    own, half_width = run.motion.light_leans, float(np.max(equation.contacts._model.discs[0].geometry.half_width))
+    own, half_width = (
+        _massless(equation.kinetic, run.motion),
+        float(np.max(equation.contacts._model.discs[0].geometry.half_width)),
+    )
     assert own.size
     now, before = equation.contacts.at(x, rate), equation.solved(0.0, run.start).place
     left = (now.force - now.outside)[own]
