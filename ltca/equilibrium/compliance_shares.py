@@ -50,7 +50,8 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
         up, down = (end.parts[number] for end in ends)
         work["pins"] += _taken(here.flank.gradient, own, up.pin_load - down.pin_load)
         work["shaft_pins"] += _taken(here.holes.gradient, own, up.hole_load - down.hole_load)
-        bores = model.discs[number].geometry.bores(found.crank_angle, found.pose[:, model.coordinates.columns(number)])
+        geometry = model.discs[number].geometry
+        bores = geometry.bores(found.crank_angle, found.pose[:, model.coordinates.columns(number)])
         shift = np.einsum("bcj,bj->bc", bores.gradient, own)
         push = bearing_pushes(up.rollers, shift.shape[1]) - bearing_pushes(down.rollers, shift.shape[1])
         work["crank_bearings"] -= (push.conjugate() * shift).real.sum(axis=1)
@@ -59,7 +60,7 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
             for part, name in (("pins", "leaning_pins"), ("shaft_pins", "leaning_holes")):
                 change = getattr(up, name).contact.moment - getattr(down, name).contact.moment
                 work[part] += _taken(getattr(here, name).tilt.gradient, own, change)
-            rays = model.discs[number].geometry.rollers(found.crank_angle)
+            rays = geometry.rollers(found.crank_angle)
             turning, back = (bearing_moments(end.rollers, rays, shift.shape[1]) for end in (up, down))
             for crank, changed in enumerate((turning - back).T):
                 relative = lean
@@ -77,13 +78,12 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
         wheel, ring = np.zeros(size, dtype=bool), np.zeros(size, dtype=bool)
         wheel[model.coordinates.wheel_place] = wheel[model.coordinates.wheel_lean_place] = True
         ring[model.coordinates.ring_place] = True
+        relative = moved if model.flange is None else _against_flanges(model, moved)
+        work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
+        work["cranks"] += _stored(stiffness, np.where(wheel | ring, 0.0, relative))
         if model.flange is None:
-            work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
-            work["cranks"] += _stored(stiffness, np.where(wheel | ring, 0.0, moved))
             work["shaft_pins"] += _stored(stiffness, np.where(ring, moved, 0.0))
         else:
-            work["wheel_bearing"] += _stored(stiffness, np.where(wheel, moved, 0.0))
-            work["cranks"] += _stored(stiffness, np.where(wheel | ring, 0.0, _against_flanges(model, moved)))
             work["carrier"] += _stored(model.flange, moved[:, model.coordinates.ring_place])
             if model.discs[0].geometry.tips_by_ring.size:  # what is left are the tips of the shaft pins
                 held = _stored(stiffness, np.where(wheel, 0.0, moved))
@@ -99,11 +99,11 @@ def _of_ring(
     model: Reducer, crank_angle: FloatArray, poses: Sequence[FloatArray], ends: Sequence[Response]
 ) -> FloatArray:
     """Work of changed forces on the ring along what they move it."""
-    place, forces = model.discs[0].geometry.placement, []
+    turned, forces = model.discs[0].geometry.placement.wheel_rotation(crank_angle), []
     for pose, end in zip(poses, ends, strict=True):
-        turned = unit(place.wheel_rotation(crank_angle) + pose[:, WHEEL_ANGLE])[:, None]
         pins = end.parts[0].pin_load.shape[1]
-        forces.append(sum(part.pin_forces[:, :pins] for part in end.parts) * turned.conjugate())
+        force = sum(part.pin_forces[:, :pins] for part in end.parts)
+        forces.append(force * unit(-turned - pose[:, WHEEL_ANGLE])[:, None])
     moved = np.asarray(ends[0].ring) - np.asarray(ends[1].ring)
     return np.asarray(((forces[0] - forces[1]).conjugate() * moved).real.sum(axis=1))
 

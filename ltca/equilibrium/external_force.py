@@ -17,17 +17,10 @@ from ltca.geometry.rotation import unit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExternalForce:
-    """Force in the plane of the discs on the wheel, relative to the pin shaft.
+    """Force in the plane of the discs on the wheel, relative to the pin shaft, x + iy, N, and what presses the lean of the wheel,
+    z F − i M of forces at z and moments M = M_x + i M_y, N·mm.
 
-    Attributes
-    ----------
-    still : array of complex, shape (2,)
-        At rest in the frame of the pin shaft, x + iy, N, and what presses the lean of the wheel, z F − i M of forces at z and
-        moments M = M_x + i M_y, N·mm.
-    turning : array of complex, shape (2,)
-        Turning with the wheel by φ_C/u, as they stand at φ_C = 0.
-    reduction_ratio : float
-        u.
+    One pair stands still in the frame of the pin shaft, one turns with the wheel by φ_C/u from where it is at φ_C = 0.
     """
 
     still: ComplexArray = by_drive(1)
@@ -39,14 +32,11 @@ class ExternalForce:
         """Return the forces of a drive; None where there are none."""
         if not drive.load.external:
             return None
-        sums = {
-            frame: sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))
+        housing, output = (
+            sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))
             for frame in ("housing", "output")
-        }
-        if drive.wheel_is_held:
-            still, turning = -sums["output"], -sums["housing"]
-        else:
-            still, turning = sums["housing"], sums["output"]
+        )
+        still, turning = (-output, -housing) if drive.wheel_is_held else (housing, output)
         return cls(still=still, turning=turning, reduction_ratio=drive.reduction_ratio)
 
     def on_wheel(self, crank_angle: FloatArray) -> ComplexArray:
@@ -57,8 +47,7 @@ class ExternalForce:
 def _pressing(load: ExternalLoad) -> ComplexArray:
     """Force in the plane, N, and what presses a lean, N·mm; forces along the axis act on it and press none."""
     force = complex(load.force.x, load.force.y)
-    moment = complex(load.moment.x, load.moment.y)
-    return np.array([force, load.at.z * force - 1j * moment])
+    return np.array([force, load.at.z * force - 1j * complex(load.moment.x, load.moment.y)])
 
 
 def entries_of(drive: Drive, frame: str) -> list[ExternalLoad]:

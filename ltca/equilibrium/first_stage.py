@@ -42,73 +42,33 @@ from ltca.geometry.rotation import unit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshForces:
-    """Forces of the sun on the planets.
-
-    Attributes
-    ----------
-    tangential : array, shape (positions, cranks)
-        F_t, positive where it turns the planet counter-clockwise, N.
-    radial : array, shape (positions, cranks)
-        F_r, away from the sun, N.
-    axial : array, shape (positions, cranks)
-        F_a along z, N.
-    in_plane : array of complex, shape (positions, cranks)
-        F_t and F_r in the fixed frame, N.
-    couple : array of complex, shape (positions, cranks)
-        F_a r_w as a pair of opposite radial forces times their distance along z, N·mm.
+    """Forces of the sun on the planets, N, shape (positions, cranks): F_t, positive where it turns the planet counter-clockwise,
+    F_r away from the sun, F_a along z, and F_t and F_r in the fixed frame.
     """
 
     tangential: FloatArray
     radial: FloatArray
     axial: FloatArray
     in_plane: ComplexArray
-    couple: ComplexArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageMesh:
-    """Mesh of the sun with the planets of all cranks.
+    """Mesh of the sun with the planets of all cranks; lengths are in mm.
 
-    Attributes
-    ----------
-    pitch_radius : float
-        r_w of the planets, mm.
-    separating, axial : float
-        tan α_wt, and tan β_w, positive where planets are right-handed.
-    twist : float
-        Rotation of a crank by its moment while the sun is held, 1/(c r_b²), rad/(N·mm); 0 where teeth are rigid.
-    half_free : float
-        Half of the angle by which a planet is free to turn, rad.
-    plane : float
-        Axial place of the planets, mm.
-    sun_radius : float
-        Radius of the pitch circle of the sun, mm.
-    reduction_ratio : float
-        u.
-    outward : array of complex, shape (cranks,)
-        Directions from the sun to the cranks.
-    by_pose : array of complex, shape (cranks, 2, coordinates)
-        Displacement and slope of every crank at the planet by the coordinates, without forces there and with its bearings where
-        they stand.
-    by_bearings : array, shape (2, 2)
-        Displacement and slope at the planet by one displacement in each of the two bearings, the planes of the discs standing
-        still, and the part of force and couple there that each bearing then carries; zero where the file says nothing of
-        these.
-    own : array, shape (2, 2)
-        Displacement and slope at the planet by a unit force and couple there while the planes of the discs stand still, mm/N.
-    on_supports : array, shape (supports, 2)
-        Part of that force and couple that each bearing of the crank carries; of rigid cranks one at the planet carries the
-        force, behind those beside the discs.
-    yields : bool
-        Whether cranks yield, or the far flange in which they stand.
-    carried : bool
-        Whether the carrier is the output, which the main bearing holds against what the sun presses on its planets.
-    sun_turns : float
-        Turns of the sun against the carrier by one of the cranks, −z₂/z₁.
-    sun_runout : array of complex, shape (1,)
-        d_s at crank angle zero, mm.
-    planet_runout : array of complex, shape (cranks,)
-        d_c there, mm.
+    Pitch radii are those of planets, r_w, and sun; `separating` is tan α_wt and `axial` tan β_w, positive where planets are
+    right-handed. A crank turns by `twist` by its moment while the sun is held, 1/(c r_b²), rad/(N·mm), 0 of rigid teeth, and a
+    planet freely by twice `half_free`, rad. `plane` is the axial place of the planets, `outward` are the directions from the
+    sun to the cranks. Runouts, d_s and d_c, are those at crank angle zero; the sun turns against the carrier by `sun_turns` of a
+    crank, −z₂/z₁. `yields` tells whether cranks yield, or the far flange in which they stand, and `carried` whether the carrier
+    is the output, which the main bearing holds against what the sun presses on its planets.
+
+    Displacement and slope of a crank at the planet follow from the coordinates, without forces there and with its bearings where
+    they stand, by `by_pose`, shape (cranks, 2, coordinates). With the planes of the discs standing still they follow from
+    displacements in the two bearings by `by_bearings`, which also is the part of force and couple at the planet that each bearing
+    then carries (zero where the file says nothing of these), and from a unit force and couple by `own`, mm/N. `on_supports`,
+    shape (supports, 2), is the part of these that each bearing of the crank carries; of rigid cranks one at the planet, behind
+    those beside the discs, carries the force.
     """
 
     pitch_radius: BatchScalar = by_drive(0)
@@ -139,7 +99,7 @@ class StageMesh:
         mesh, places, coordinates = stage.mesh(distance), np.array(drive.crank.places), Coordinates.of_drive(drive)
         stiffness, support, discs = stage.mesh_stiffness, drive.crank.support, drive.disc.number_of_discs
         (planes, slopes), bearings, shaft = journals(drive), drive.crank_supports, drive.materials.crankshaft
-        count = len(planes) + len(slopes)
+        count, number = len(planes) + len(slopes), drive.crank.number
         place = 0.0 if stage.plane is None else stage.plane  # left out where no bearing gives their forces an arm
         bending, own, by_bearings = np.zeros((count, 2)), np.zeros((2, 2)), np.zeros((2, 2))
         on_supports: FloatArray = np.eye(discs + 1, 2, -discs)
@@ -150,14 +110,13 @@ class StageMesh:
             )  # fmt: skip
             at_planet = np.array([discs, count + 1])
             held = np.setdiff1d(np.arange(count + 2), at_planet)
-            bending = np.asarray(
-                np.linalg.solve(whole[np.ix_(held, held)], whole[np.ix_(held, at_planet)]), dtype=float
-            )
-            own = whole[np.ix_(at_planet, at_planet)] - whole[np.ix_(at_planet, held)] @ bending
+            beside = whole[np.ix_(held, at_planet)]
+            bending = np.asarray(np.linalg.solve(whole[np.ix_(held, held)], beside), dtype=float)
+            own = whole[np.ix_(at_planet, at_planet)] - beside.T @ bending
         if bearings is not None:
             on_supports = support_parts([place], bearings, [place])
             by_bearings = on_supports - support_parts(planes, bearings, slopes) @ bending
-        by_pose = np.zeros((drive.crank.number, 2, coordinates.size), dtype=complex)
+        by_pose = np.zeros((number, 2, coordinates.size), dtype=complex)
         for crank in range(coordinates.cranks):
             x = coordinates.journals(crank)
             by_pose[crank][:, x], by_pose[crank][:, x + 1] = bending.T, 1j * bending.T
@@ -184,7 +143,7 @@ class StageMesh:
             carried=drive.wheel_is_held,
             sun_turns=-stage.ratio,
             sun_runout=stage.sun_runout.amount * unit(np.array([stage.sun_runout.angle])),
-            planet_runout=np.array(stage.planet_runout.places(drive.crank.number)),
+            planet_runout=np.array(stage.planet_runout.places(number)),
         )
 
     @property
@@ -214,7 +173,7 @@ class StageMesh:
 
         `sense` is that of the moments that hold the cranks, shape (positions,), by which one flank or the other touches.
         """
-        pushed = self._slope(np.broadcast_to(sense[:, None], (sense.size, self.outward.shape[-1])))[0]
+        pushed = self._slope(np.broadcast_to(sense[:, None], (sense.size, self.outward.shape[-1])))[..., 0]
         return np.asarray((pushed.conjugate() * self._stands_off(crank_angle)).real)
 
     def forces(self, moments: FloatArray) -> MeshForces:
@@ -227,7 +186,6 @@ class StageMesh:
             radial=radial,
             axial=axial,
             in_plane=(radial - 1j * tangential) * self.outward,
-            couple=axial * self.pitch_radius * self.outward,
         )
 
     def on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
@@ -235,11 +193,12 @@ class StageMesh:
         of the wheel with, z F − i M, N·mm, shape (positions, 2), and their derivatives by the moments of the cranks, shape
         (positions, 2, cranks); zero where the carrier is held.
         """
-        sign, forces = -1.0 if self.carried else 0.0, self.forces(moments)
-        plane, arm, slope = self.plane, self.sun_radius * self.outward, self._slope(np.sign(moments))[0]
-        found = forces.in_plane, plane * forces.in_plane - arm * forces.axial
-        by_moments = slope, plane * slope + arm * self.axial / self.pitch_radius
-        return sign * np.stack(found, axis=1).sum(axis=2), sign * np.stack(by_moments, axis=1)
+        slope, lever = (
+            self._slope(np.sign(moments))[..., 0],
+            self.sun_radius * self.outward * self.axial / self.pitch_radius,
+        )
+        by_moments = (-1.0 if self.carried else 0.0) * np.stack((slope, self.plane * slope + lever), axis=1)
+        return (by_moments * moments[:, None]).sum(axis=2), by_moments
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
         """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""
@@ -249,20 +208,14 @@ class StageMesh:
         """Return force and couple of the teeth on every planet, N and N·mm, shape (positions, cranks, 2), and their derivatives
         by the moment of their own crank.
         """
-        forces = self.forces(moments)
-        both = np.stack((forces.in_plane, forces.couple), axis=-1)
-        return both, np.stack(self._slope(np.sign(moments)), axis=-1)
+        slope = self._slope(np.sign(moments))
+        return slope * moments[..., None], slope
 
     def together(self, sense: float) -> tuple[float, FloatArray]:
-        """Return how the cranks of one drive lag together on one flank: by the moment of all of them, shared evenly,
-        rad/(N·mm), and by the coordinates, rad by mm or rad, shape (coordinates,).
-
-        Parameters
-        ----------
-        sense : float
-            Of the moments that hold the cranks, ±1.
+        """Return how the cranks of one drive lag together on one flank, by the sense of the moments that hold them, ±1: by the
+        moment of all of them, shared evenly, rad/(N·mm), and by the coordinates, rad by mm or rad, shape (coordinates,).
         """
-        pushed = self.on_planets(np.full((1, self.outward.shape[-1]), sense))[1][0]
+        pushed = self._slope(np.full((1, self.outward.shape[-1]), sense))[0]
         own = np.einsum("ci,ij,cj->c", pushed.conjugate(), self.own, pushed).real
         by_pose = np.einsum("ci,cin->cn", pushed.conjugate(), self.by_pose).real.mean(axis=0)
         return float(np.mean(np.squeeze(self.twist) + own)) / own.size, np.asarray(by_pose)
@@ -277,10 +230,10 @@ class StageMesh:
         """Return the work of forces and couples on the planets by the coordinates, shape (positions, coordinates)."""
         return np.asarray((self.by_pose.conjugate() * on_planets[..., None]).real.sum(axis=(-3, -2)))
 
-    def _slope(self, sense: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Derivatives of force and couple by the moments of the cranks, whose senses are given."""
+    def _slope(self, sense: FloatArray) -> ComplexArray:
+        """Derivatives of force and couple by the moments of the cranks, whose senses are given, shape (positions, cranks, 2)."""
         in_plane = (self.separating * sense - 1j) / self.pitch_radius * self.outward
-        return np.asarray(in_plane), np.asarray(-self.axial * self.outward * np.ones(sense.shape))
+        return np.stack(np.broadcast_arrays(in_plane, -self.axial * self.outward), axis=-1)
 
     def displaced(self, moments: FloatArray, pose: FloatArray, given: ComplexArray | None) -> ComplexArray:
         """Return displacement and slope of every crank at its planet in the fixed frame, mm and rad, shape (positions, cranks,
@@ -301,7 +254,7 @@ class StageMesh:
         """
         each = self.twist * moments
         if displaced is not None:
-            each = each + (self.on_planets(moments)[1].conjugate() * displaced).real.sum(axis=-1)
+            each = each + (self._slope(np.sign(moments)).conjugate() * displaced).real.sum(axis=-1)
         total = moments.sum(axis=1)
         free = np.sign(total)[:, None] * self.half_free
         lag = each.mean(axis=1) + np.broadcast_to(free, (total.size, 1))[:, 0]

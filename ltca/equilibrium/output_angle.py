@@ -33,9 +33,8 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
     moments = model.crank_moments(found.crank_angle, found.pose, found.response.parts)
     displaced, runout = None, None
     if model.stage.yields:
-        carried, given = model.stage.beside_discs(model.stage.on_planets(moments)[0]), None
-        if model.supports is not None:
-            given = model.supports.given(found.pose, carried)
+        carried = model.stage.beside_discs(model.stage.on_planets(moments)[0])
+        given = None if model.supports is None else model.supports.given(found.pose, carried)
         displaced = model.stage.displaced(moments, found.pose, given)
     if model.stage.runs_out:
         each = model.stage.lag_by_runout(found.crank_angle, np.sign(moments.sum(axis=1)))
@@ -46,16 +45,8 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
 def shares_of_cranks(model: Reducer, found: Equilibrium, moments: FloatArray) -> FloatArray:
     """Return what each crank takes of a little more torque at the wheel, parts of one, shape (positions, cranks).
 
-    By a difference of the moments along the motion that the torque makes; not a number where a position has no answer.
-
-    Parameters
-    ----------
-    model : Reducer
-        That balanced the positions.
-    found : Equilibrium
-        Balanced positions.
-    moments : array, shape (positions, cranks)
-        Moments that hold the cranks there, N·mm.
+    By a difference of the moments that hold the cranks, N·mm, along the motion that the torque makes; not a number where a
+    position has no answer.
     """
     response, shares = found.response, np.full(moments.shape, np.nan)
     rows = np.nonzero(np.isfinite(response.tangent).all(axis=(1, 2)) & np.isfinite(moments).all(axis=1))[0]

@@ -20,17 +20,7 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartlyBalanced:
-    """Positions of which some may have no answer.
-
-    Attributes
-    ----------
-    balanced : array of bool, shape (positions,)
-        Which have an answer.
-    found : Equilibrium
-        Of these.
-    failure : ConvergenceError or None
-        Of the first that has none.
-    """
+    """Which positions have an answer, that of these, and the failure of the first that has none."""
 
     balanced: NDArray[np.bool_]
     found: Equilibrium

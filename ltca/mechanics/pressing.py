@@ -177,7 +177,7 @@ def _rub(at: Any, disc: int, g: FloatArray) -> FloatArray:
     stiffness = np.concatenate([at.stiffness[0][:, kind] for kind in kinds], axis=1)
     if system.coupled and not friction.turns:
         stiffness = _through_bodies(at, disc, stiffness)
-    slip, by_load, held, by_slip = friction.along(places.geometry, at.angle, places.pose, places, load, stiffness, disc)
+    slip, by_load, held, by_slip = friction.along(places, load, stiffness, disc)
     at.rubs.append(by_load)
     # Moments on leans rub as loads do, those of contacts that stick by what these hold.
     by_moment = by_load + np.divide(held, load, out=np.zeros(load.shape), where=load > 0.0)

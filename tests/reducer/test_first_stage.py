@@ -240,7 +240,7 @@ def test_virtual_work_with_bending_cranks(geared, stored):
         at = solve_at_output(model, [geared], angle, geared.load.torque, start)
         moments = model.crank_moments(angle, at.pose, at.response.parts)
         forces = stage.forces(moments)
-        both = np.stack((forces.in_plane, forces.couple), axis=-1)
+        both = np.stack((forces.in_plane, forces.axial * stage.pitch_radius * stage.outward), axis=-1)
         moved = stage.displaced(moments, at.pose, None)
         energy, slopes = stored(model, at.response, at.pose)
         energy = energy + 0.5 * np.einsum("pck,kl,pcl->p", both.conj(), stage.own, both).real

@@ -13,47 +13,33 @@ around with the crank, and with it what plays and yielding displace the members 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
 from ltca.arrays import FloatArray
+from ltca.compliance.response import DiscResponse, Response
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
-from ltca.geometry.pair_motion import FlankMotion, PairMotion
 from ltca.geometry.pairs import ContactGeometry
-
-
-class Pairs(Protocol):
-    """Pairs of pins and flank and of pins and holes of a disc."""
-
-    @property
-    def flank(self) -> FlankMotion:
-        """Wheel pins."""
-        ...
-
-    @property
-    def holes(self) -> PairMotion:
-        """Shaft pins."""
-        ...
+from ltca.mechanics.places import DiscPlaces
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slip:
-    """Slip of the contacts of one disc, wheel pins before shaft pins: of the pin against the disc along the tangent.
-
-    Attributes
-    ----------
-    by_pose : array, shape (positions, pairs, coordinates)
-        ∂s/∂q, in mm/mm and mm/rad.
-    by_crank : array, shape (positions, pairs)
-        ds/dφ_C of the drive that turns, mm/rad.
+    """Slip of pins against a disc along the tangent, wheel pins first: ∂s/∂q, mm/mm and mm/rad, shape (positions, pairs,
+    coordinates), and ds/dφ_C of the drive that turns, mm/rad, shape (positions, pairs).
     """
 
     by_pose: FloatArray
     by_crank: FloatArray
 
     @classmethod
-    def of_disc(cls, geometry: ContactGeometry, crank_angle: FloatArray, pose: FloatArray, part: Pairs) -> Slip:
+    def of_disc(
+        cls,
+        geometry: ContactGeometry,
+        crank_angle: FloatArray,
+        pose: FloatArray,
+        part: DiscPlaces | DiscResponse | Response,
+    ) -> Slip:
         """Return the slip of the contacts of one disc at crank angles, rad, and its poses, shape (positions, coordinates)."""
         place = geometry.placement
         flank, holes = part.flank.along.copy(), part.holes.along.copy()

@@ -15,34 +15,22 @@ elastically, and nothing is counted for them.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.equilibrium.balance import Equilibrium
-from ltca.equilibrium.friction.slip import Pairs, Slip
+from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
-from ltca.geometry.pairs import ContactGeometry
+from ltca.mechanics.places import DiscPlaces
 
 
 def stick_or_slip(
     before: FloatArray, stiffness: FloatArray, moved: FloatArray, bound: FloatArray
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return the force of sliders behind springs, and which of them stick.
-
-    Parameters
-    ----------
-    before : array
-        Force in the state before, N.
-    stiffness : array
-        Of the spring, N/mm.
-    moved : array
-        Displacement since, mm.
-    bound : array
-        μF, N.
+    """Return the force of sliders behind springs, N, and which of them stick; `bound` is μF.
 
     Examples
     --------
@@ -57,14 +45,8 @@ def stick_or_slip(
 class StickingFriction(TurningFriction):
     """Friction of a drive whose input is locked, since a balanced state: that of its pins, bearings resist elastically.
 
-    Attributes
-    ----------
-    pose : array, shape (positions, discs, coordinates of one)
-        q of each disc in that state.
-    tangential : array, shape (positions, discs, pairs)
-        Friction forces there, N.
-    closed : array of bool, shape (positions, discs, pairs)
-        Contacts that carried there.
+    Of that state are the pose of each disc, shape (positions, discs, coordinates of one), friction forces, N, and which contacts
+    carried, shape (positions, discs, pairs).
     """
 
     pose: FloatArray = by_drive(2)
@@ -75,29 +57,30 @@ class StickingFriction(TurningFriction):
     def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
         """Return the friction since a balance without friction, with the coefficients of the drive that turns."""
         kept = {item.name: getattr(friction, item.name) for item in fields(TurningFriction)}
-        none = {"rolling": 0.0, "support": 0.0, "motion": 0}
-        return cls(**kept | none | _state(model, found, rubbed=False))
+        none, nothing = {"rolling": 0.0, "support": 0.0, "motion": 0}, np.zeros(0)
+        return cls(**kept | none, pose=nothing, tangential=nothing, closed=nothing > 0.0).after(model, found)
 
     def after(self, model: Reducer, found: Equilibrium) -> StickingFriction:
-        """Return the friction since a state that was found with this one."""
-        return replace(self, **_state(model, found, rubbed=True))
+        """Return the friction since a state that was found with this one, or without friction."""
+        parts = found.response.parts
+        load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
+        held = [part.friction for part in parts if part.friction is not None]
+        return replace(
+            self,
+            pose=np.stack([found.pose[:, model.coordinates.columns(disc)] for disc in range(len(parts))], axis=1),
+            tangential=np.stack(held, axis=1) if held else np.zeros(load.shape),
+            closed=load > 0.0,
+        )
 
     def along(
-        self,
-        geometry: ContactGeometry,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        pairs: Pairs,
-        load: FloatArray,
-        stiffness: FloatArray,
-        disc: int,
+        self, places: DiscPlaces, load: FloatArray, stiffness: FloatArray, disc: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
         """Return friction; see `ltca.equilibrium.friction.turning.TurningFriction`."""
-        slip = Slip.of_disc(geometry, crank_angle, pose, pairs)
-        pins = geometry.placement.wheel_pin_radii.shape[-1]
-        coefficient = np.r_[np.full(pins, self.pin), np.full(load.shape[1] - pins, self.hole)]
+        slip = Slip.of_disc(places.geometry, places.angle, places.pose, places)
+        pins = places.geometry.placement.wheel_pin_radii.shape[-1]
+        coefficient = np.repeat((self.pin, self.hole), (pins, load.shape[1] - pins))
         stiffness = np.where(self.closed[:, disc], stiffness, 0.0)
-        moved = np.einsum("bpj,bj->bp", slip.by_pose, pose - self.pose[:, disc])
+        moved = np.einsum("bpj,bj->bp", slip.by_pose, places.pose - self.pose[:, disc])
         tangential, sticks = stick_or_slip(self.tangential[:, disc], stiffness, moved, coefficient * load)
         return (
             slip.by_pose,
@@ -105,14 +88,3 @@ class StickingFriction(TurningFriction):
             np.where(sticks, tangential, 0.0),
             np.where(sticks, stiffness, 0.0),
         )
-
-
-def _state(model: Reducer, found: Equilibrium, *, rubbed: bool) -> dict[str, Any]:
-    parts = found.response.parts
-    load = np.stack([np.concatenate((part.pin_load, part.hole_load), axis=1) for part in parts], axis=1)
-    held = [part.friction for part in parts if part.friction is not None]
-    return {
-        "pose": np.stack([found.pose[:, model.coordinates.columns(disc)] for disc in range(len(parts))], axis=1),
-        "tangential": np.stack(held, axis=1) if rubbed else np.zeros(load.shape),
-        "closed": load > 0.0,
-    }

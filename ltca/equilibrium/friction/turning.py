@@ -20,11 +20,12 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.beam import support_parts
 from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, PinShaft, PinWheel
-from ltca.equilibrium.friction.slip import Pairs, Slip
+from ltca.equilibrium.friction.slip import Slip
 from ltca.equilibrium.supports import crank_laws, wheel_law
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.bearing_pair import SideLaw
+from ltca.mechanics.places import DiscPlaces
 
 FADING_SLIP = 1e-4
 """Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
@@ -32,24 +33,8 @@ sense of the slip reverses."""
 
 
 def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
-    """Return the coefficient with which pins rub, free ones where they slip more easily.
-
-    Parameters
-    ----------
-    contact, seat : float
-        μ at the flank or hole, and in slot or sleeve.
-    part : PinWheel or PinShaft
-        How the pins sit.
-
-    Examples
-    --------
-    >>> from ltca.reading.drive_file import load_drive
-    >>> rubbing(0.05, 0.02, load_drive("paper").cases["CS-1"].pin_wheel)
-    0.05
-    """
-    if part.seat.kind == "fixed":
-        return contact
-    return min(contact, seat * seat_travel(part))
+    """Return the coefficient with which pins rub: μ at flank or hole, or in slot or sleeve where free ones slip more easily."""
+    return contact if part.seat.kind == "fixed" else min(contact, seat * seat_travel(part))
 
 
 def seat_travel(part: PinWheel | PinShaft) -> float:
@@ -61,26 +46,12 @@ def seat_travel(part: PinWheel | PinShaft) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningFriction:
-    """Friction of a drive that turns.
+    """Friction of a drive that turns: `motion` is +1 where its crank turns counter-clockwise, −1 clockwise, 0 of a locked input.
 
-    Attributes
-    ----------
-    pin, hole : float
-        Coefficients with which wheel pins and shaft pins rub (`rubbing`).
-    rolling : float
-        f·(r_i + r_BR) of the crank bearings, mm.
-    support : float
-        f of the bearings of cranks and wheel times their radius, mm.
-    crank_bearings : array, shape (bearings, discs)
-        Load of each bearing of a crank by the forces of the discs on it.
-    wheel_preload : float
-        Sum of the loads of the elements of the main bearing by its preload, N.
-    crank_preload : array, shape (bearings,)
-        The same of the bearings of a crank, N.
-    motion : int
-        +1 where the crank turns counter-clockwise, −1 clockwise, 0 where the input is locked.
-    strength : float
-        Part of all coefficients that counts, for continuation.
+    `pin` and `hole` are coefficients (`rubbing`), `rolling` is f·(r_i + r_BR) of the crank bearings and `support` f times the
+    radius of the bearings of cranks and wheel, mm. `crank_bearings` is the load of each bearing of a crank by the forces of the
+    discs on it, shape (bearings, discs); preloads are sums over the elements of a bearing, N, those of a crank of shape
+    (bearings,). `strength` is the part of all coefficients that counts, for continuation.
     """
 
     pin: float
@@ -96,16 +67,18 @@ class TurningFriction:
     @classmethod
     def of_drive(cls, drive: Drive) -> TurningFriction | None:
         """Return the friction of a drive; None where it has none."""
-        found, shaft, bearing = drive.friction, drive.pin_shaft, drive.crank_bearing
+        found, shaft, bearing, wheel = drive.friction, drive.pin_shaft, drive.crank_bearing, wheel_law(drive)
         if found is None:
             return None
+        # Two supports of a crank in balance, or a bearing beside each disc.
+        planes, supports = drive.disc.disc_planes, drive.crank_supports
         return cls(
             pin=rubbing(found.pin, found.seat, drive.pin_wheel),
             hole=0.0 if shaft is None else rubbing(found.hole, found.seat, shaft),
             rolling=found.roller * (bearing.inner_race_radius + bearing.roller_radius),
             support=found.support_bearing * found.support_bearing_radius,
-            crank_bearings=_bearing_loads(drive),
-            wheel_preload=wheel.preload_load if isinstance(wheel := wheel_law(drive), SideLaw) else 0.0,
+            crank_bearings=np.eye(len(planes)) if supports is None else support_parts(planes, supports),
+            wheel_preload=wheel.preload_load if isinstance(wheel, SideLaw) else 0.0,
             crank_preload=np.array([law.preload_load for law in crank_laws(drive) or ()] or [0.0]),
             motion=drive.motion_sign,
         )
@@ -124,21 +97,14 @@ class TurningFriction:
         return replace(self, motion=-self.motion)
 
     def along(
-        self,
-        geometry: ContactGeometry,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        pairs: Pairs,
-        load: FloatArray,
-        stiffness: FloatArray,
-        disc: int,
+        self, places: DiscPlaces, load: FloatArray, stiffness: FloatArray, disc: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
-        """Return slip by the pose, the friction of wheel pins and shaft pins by their loads, what it has beside, N, and what it
-        grows with slip by, N/mm or None; each of shape (positions, pairs) but the first, which has the coordinates behind.
+        """Return slip by the pose, the friction of wheel pins and shaft pins of a disc by their loads, what it has beside, N, and
+        what it grows with slip by, N/mm or None; each of shape (positions, pairs), the first with the coordinates behind.
         """
-        slip = Slip.of_disc(geometry, crank_angle, pose, pairs)
-        pins = geometry.placement.wheel_pin_radii.shape[-1]
-        soft = FADING_SLIP * geometry.placement.mean_eccentricity
+        slip = Slip.of_disc(places.geometry, places.angle, places.pose, places)
+        place = places.geometry.placement
+        pins, soft = place.wheel_pin_radii.shape[-1], FADING_SLIP * place.mean_eccentricity
         sense = (self.motion * self.strength) * np.clip(slip.by_crank / soft, -1.0, 1.0)
         sense[:, :pins] *= self.pin
         sense[:, pins:] *= self.hole
@@ -158,8 +124,7 @@ class TurningFriction:
     ) -> FloatArray:
         """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
 
-        The wheel turns against the shaft by 1/u of the crank; the contacts of each disc come with their friction, and
-        `external` is the force from outside on the wheel, N.
+        The contacts of each disc come with their friction; `external` is the force from outside on the wheel, N.
         """
         pins = parts[0].pin_load.shape[1]
         load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts) + external)
@@ -180,9 +145,3 @@ class TurningFriction:
         reactions = np.maximum(np.abs(carried), self.crank_preload).sum(axis=-1)
         rolled = np.abs(forces).sum(axis=-1)
         return np.asarray(self.motion * self.strength * (self.rolling * rolled + self.support * reactions))
-
-
-def _bearing_loads(drive: Drive) -> FloatArray:
-    """Load of the bearings of a crank by the forces of the discs: two supports in balance, or a bearing beside each disc."""
-    support = drive.crank_supports
-    return np.eye(drive.disc.number_of_discs) if support is None else support_parts(drive.disc.disc_planes, support)
