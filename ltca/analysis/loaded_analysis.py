@@ -46,7 +46,6 @@ from ltca.equilibrium.partial_balance import (
     PartlyBalanced,
     all_balanced,
     balance_what_can_be,
-    nothing_balanced,
 )
 from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
 from ltca.errors import ConvergenceError, DriveError, shortened
@@ -456,10 +455,7 @@ def analyse(
             start[full.balanced] = full.found.pose
         light = full
         if light_torque != case.torque:
-            try:
-                light = balance(light_torque, start) if known is None else all_balanced(known[1])
-            except ConvergenceError as error:
-                light = nothing_balanced(full.found, angle.size, error)
+            light = balance(light_torque, start, full.found) if known is None else all_balanced(known[1])
         back = _turned_back(prepared.model, case.drive, full, angle, case.torque)
         if light.failure is not None and light is not full:
             light.failure.add(f"load.light_torque = {light_torque:g} N·mm")
@@ -626,12 +622,7 @@ def _turned_back(
     if friction is None:
         return None
     other, near = replace(model, friction=friction.reversed()), full.found
-
-    balance = partial(solve_at_output, other, [drive])
-    try:
-        found = balance_what_can_be(balance, near.crank_angle, torque, near.pose)
-    except ConvergenceError as error:
-        found = nothing_balanced(near, near.crank_angle.size, error)
+    found = balance_what_can_be(partial(solve_at_output, other, [drive]), near.crank_angle, torque, near.pose, near)
     of_these: Equilibrium = replace(found.spread(found.found), crank_angle=near.crank_angle)
     return replace(full.spread(of_these), crank_angle=angle)
 

@@ -38,19 +38,17 @@ def all_balanced(found: Equilibrium) -> PartlyBalanced:
     return PartlyBalanced(balanced=np.ones(found.crank_angle.size, dtype=bool), found=found)
 
 
-def nothing_balanced(like: Equilibrium, positions: int, failure: ConvergenceError) -> PartlyBalanced:
-    """Return positions of which none has an answer, with arrays of the same shapes as those of `like`."""
-    none = np.zeros(positions, dtype=bool)
-    return PartlyBalanced(balanced=none, found=take_positions(like, np.flatnonzero(none)), failure=failure)
-
-
 def balance_what_can_be(
-    balance: Balance, crank_angle: FloatArray, torque: float, start: FloatArray | None = None
+    balance: Balance,
+    crank_angle: FloatArray,
+    torque: float,
+    start: FloatArray | None = None,
+    like: Equilibrium | None = None,
 ) -> PartlyBalanced:
     """Balance positions together, and where that fails find out which of them have an answer.
 
-    Poses to start from, shape (positions, coordinates), are not a number where there is none. Where no position has an answer the
-    ConvergenceError of all together is raised.
+    Poses to start from, shape (positions, coordinates), are not a number where there is none. Where no position has an answer
+    arrays have the shapes of those of `like`; without it the ConvergenceError of all together is raised.
     """
     failures: list[ConvergenceError] = []
     pieces: list[tuple[NDArray[np.intp], Equilibrium]] = []
@@ -66,7 +64,10 @@ def balance_what_can_be(
             if part.size > 1:
                 waiting += np.array_split(part, 2)[::-1]
     if not pieces:
-        raise failures[0]
+        if like is None:
+            raise failures[0]
+        none = np.zeros(0, dtype=np.intp)
+        pieces.append((none, take_positions(like, none)))
     balanced = np.zeros(crank_angle.size, dtype=bool)
     balanced[np.concatenate([rows for rows, _ in pieces])] = True
     # The first failure is that of all positions together, and names the worst of them and how many there are.
