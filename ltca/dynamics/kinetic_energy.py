@@ -108,14 +108,22 @@ class KineticEnergy:
         `x` and `rate` are coordinates, mm and rad, and their rates, mm/s and rad/s, shape (n,).
         """
         cosine, sine = np.cos(x[self.crank]), np.sin(x[self.crank])
-        parts, f, turn = (self.mass, self.turned, self.displaced), self.frame, self.frame @ rate
-        matrix, g, h = (mean + cosine * even + sine * odd for mean, even, odd in parts)
-        slope, g_slope, h_slope = (cosine * odd - sine * even for _, even, odd in parts)
-        matrix = matrix + _framed(f, g @ x, float(x @ h @ x))
-        slope = slope + _framed(f, g_slope @ x, float(x @ h_slope @ x))
-        pushed, along = slope @ rate, g @ rate
-        bias = rate[self.crank] * pushed + f * (rate @ along + 2.0 * turn * (x @ h @ rate)) + turn * along
-        bias -= turn * (g.T @ rate) + turn**2 * (h @ x)
+
+        def over(parts: FloatArray) -> tuple[FloatArray, FloatArray]:
+            """Value and derivative at the crank angle."""
+            mean, even, odd = parts
+            return mean + cosine * even + sine * odd, cosine * odd - sine * even
+
+        f, turn, bias = self.frame, self.frame @ rate, np.zeros(x.size)
+        matrix, slope = over(self.mass)
+        if f.any():  # the frame turns
+            (g, g_slope), (h, h_slope) = over(self.turned), over(self.displaced)
+            along = g @ rate
+            matrix = matrix + _framed(f, g @ x, float(x @ h @ x))
+            slope = slope + _framed(f, g_slope @ x, float(x @ h_slope @ x))
+            bias = f * (rate @ along + 2.0 * turn * (x @ h @ rate)) + turn * (along - g.T @ rate) - turn**2 * (h @ x)
+        pushed = slope @ rate
+        bias += rate[self.crank] * pushed
         bias[self.crank] -= 0.5 * (rate @ pushed)
         for spin in self.spins:
             spin.add(f, x, rate, matrix, bias)
