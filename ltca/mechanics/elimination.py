@@ -189,7 +189,7 @@ def _on_pins(at: Any, part: Pressing) -> Pressing:
     return part._replace(
         **chosen,
         stiffness=part.stiffness[:, :, some],
-        presses=tuple(press[:, :, :0] for press in part.presses),
+        presses=(part.presses[0][:, :, :0], part.presses[1][:, :, :0]),
         rolls=(some[:0], some[:0]),
         force=np.zeros(part.force.shape),
         tangent=np.zeros(part.tangent.shape),

@@ -8,7 +8,7 @@ from copy import copy
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.mechanics.contacts import Linearised
 from ltca.mechanics.pressing import BySlope
 
@@ -39,7 +39,7 @@ def with_whole_tangent(at: Linearised, lever: FloatArray) -> Linearised:
     return found
 
 
-def _slopes(at: Linearised, shifts_by_pose: FloatArray | None, lever: FloatArray) -> BySlope:
+def _slopes(at: Linearised, shifts_by_pose: ComplexArray | None, lever: FloatArray) -> BySlope:
     """Differences of loads and of what bodies take between places a step to either side, coordinate by coordinate."""
     rows, size = at.pose.shape
     load, taken = np.zeros((2, rows, at.system.components, at.count, size))
