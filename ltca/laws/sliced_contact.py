@@ -83,8 +83,8 @@ class SlicedContact:
         q at the points of the slices, N/mm.
     near : array, shape (…, 2 + 3 slices) or (…, 0)
         δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
-    left : array, shape (…), or None
-        Force that may be left over of the slices, N; None of laws that leave none.
+    left : array, shape (…)
+        Force that may be left over of the slices, N; zero of laws that leave none.
     """
 
     load: FloatArray
@@ -95,14 +95,14 @@ class SlicedContact:
     slice_load: FloatArray
     line_load: FloatArray
     near: FloatArray
-    left: FloatArray | None = None
+    left: FloatArray
 
     @classmethod
     def open(cls, contacts: int, slices: int) -> SlicedContact:
         """Return a row of contacts that carry nothing."""
-        numbers = {name: np.zeros(contacts) for name in ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt")}
+        names = "load", "moment", "by_approach", "by_tilt", "moment_by_tilt", "left"
         return cls(
-            **numbers,
+            **{name: np.zeros(contacts) for name in names},
             slice_load=np.zeros((contacts, slices)),
             line_load=np.zeros((contacts, slices, POINTS)),
             near=np.zeros((contacts, 2 + 3 * slices)),
@@ -111,8 +111,7 @@ class SlicedContact:
     def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
         """Write what some of a row of contacts are now."""
         for name in self.__slots__:
-            if (values := getattr(self, name)) is not None:
-                values[rows] = getattr(part, name)
+            getattr(self, name)[rows] = getattr(part, name)
 
     def shaped(self, shape: tuple[int, ...]) -> SlicedContact:
         """Return a row of contacts in a shape."""
@@ -151,12 +150,13 @@ class SlicedContact:
             slice_load=each[0],
             line_load=line_load,
             near=np.concatenate((approach[..., None], tilt[..., None], *each), axis=-1),
+            left=np.zeros(shape),
         )
 
     @property
     def kept(self) -> SlicedContact:
         """The contacts without what a search alone asks for."""
-        return replace(self, near=self.near[..., :0], left=None)
+        return replace(self, near=self.near[..., :0])
 
     def moved(
         self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float

@@ -311,6 +311,7 @@ def _in_series(contact: SlicedContact, seat: SlicedContact, half: float) -> Slic
         by_approach=found[:, 0, 0],
         by_tilt=0.5 * (found[:, 0, 1] + found[:, 1, 0]),
         moment_by_tilt=found[:, 1, 1],
+        left=np.zeros(contact.left.shape),
     )
 
 
