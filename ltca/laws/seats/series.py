@@ -52,28 +52,17 @@ class ConformingSeries:
 
 def _neat_fit(mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None) -> float:
     """Return b of the neat fit, where the play is negligible beside the approach."""
+    from scipy.optimize import brentq  # 0.2 s to import, for seats alone
 
     def left(b: float) -> float:
         """Play times b², 1/π for small arcs."""
         return b**2 * solve_arc(b, mismatch, breathing, sleeve).play
 
     # In small steps: sleeves thin enough to bend away have more such arcs, far beyond the first.
-    low = 0.3 if sleeve is None else 0.002
-    high = 1.2 * low
-    at_low, at_high = left(low), left(high)
-    while at_high > 0.0:
-        low, high, at_low = high, 1.2 * high, at_high
-        at_high = left(high)
-    for _ in range(80):  # Illinois' regula falsi
-        b = (low * at_high - high * at_low) / (at_high - at_low)
-        found = left(b)
-        if abs(found) < 1e-14:
-            break
-        if found < 0.0:
-            high, at_high, at_low = b, found, 0.5 * at_low
-        else:
-            low, at_low, at_high = b, found, 0.5 * at_high
-    return b
+    high = 0.3 if sleeve is None else 0.002
+    while left(high) > 0.0:
+        high *= 1.2
+    return float(brentq(left, high / 1.2, high, xtol=1e-15))
 
 
 def _fit(nodes: FloatArray, values: FloatArray) -> FloatArray:
