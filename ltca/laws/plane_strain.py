@@ -87,25 +87,13 @@ def plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlaneContactLaw(ContactLaw):
-    """Plane-strain law of one line contact.
-
-    Attributes
-    ----------
-    thickness : float
-        mm.
-    contact_modulus : float
-        E*, MPa.
-    datum : float
-        D, mm; large compared with every half-width.
-    """
+    """Plane-strain law of one line contact: thickness, mm, E*, MPa, and datum D, mm, large compared with every half-width."""
 
     thickness: float
     contact_modulus: float
     datum: float
 
-    def approach_at_load(
-        self, load: FloatArray, effective_radius: ArrayLike, start: FloatArray | None = None
-    ) -> tuple[FloatArray, FloatArray]:
+    def approach_at_load(self, load: FloatArray, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the approach at a load and its derivative, mm and mm/N, in closed form; zero where there is no load."""
         force, radius = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(effective_radius, dtype=float))
         loaded = force > 0.0

@@ -34,17 +34,7 @@ ORDERS = 512
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RingBeam:
-    """A ring of rectangular section as a curved beam.
-
-    Attributes
-    ----------
-    inner_radius, outer_radius, width : float
-        mm.
-    youngs_modulus : float
-        MPa.
-    poisson_ratio : float
-        ν.
-    """
+    """A ring of rectangular section as a curved beam; lengths in mm, Young's modulus in MPa."""
 
     inner_radius: float
     outer_radius: float

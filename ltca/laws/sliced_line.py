@@ -130,7 +130,7 @@ def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
 def _between(slices: int) -> NDArray[np.intp]:
     """Lag of each pair of slices."""
     number = np.arange(slices)
-    return np.abs(number[:, None] - number)
+    return np.asarray(np.abs(number[:, None] - number))
 
 
 @cache
@@ -143,16 +143,10 @@ def _moments(length: float, slices: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedLine:
-    """Law of line contacts of one length and modulus in slices.
+    """Law of line contacts of one length, mm, and contact modulus E*, MPa, in at least 3 slices.
 
-    Parameters
+    Attributes
     ----------
-    length : float
-        L, mm.
-    contact_modulus : float
-        E*, MPa.
-    slices : int
-        n, at least 3.
     relief : array, shape (slices, points)
         h, mm: by how much lead and profile fall short at the points (`slice_heights`).
     sleeve : float
@@ -237,11 +231,10 @@ class SlicedLine:
         line_load = contact.line_load.reshape(-1, n, POINTS)[carries].transpose(1, 2, 0)
         plane = PlaneContactLaw(thickness=1.0, contact_modulus=self.contact_modulus, datum=DATUM * self.length)
         own = np.matmul(_moments(self.length, n)[:, :1], plane.energy_of_load(line_load, radius)).sum(axis=(0, 1))
-        # ∫ u_twice dF along F x², with dF = 2 x F dx
-        x, weights = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
-        twice = [self._counted_twice(load * place**2, radius)[0] for place in x.tolist()]
         stored, pressed_in, _ = self._coupling(load, radius)
-        stored -= (load * np.tensordot(2.0 * x * weights, twice, axes=1)).sum(axis=0)
+        # ∫ u dF along F x² of what is counted twice, dF = 2 x F dx
+        for x, weight in zip(0.5 * (_NODES + 1.0), _WEIGHTS, strict=True):
+            stored = stored - weight * x * (load * self._counted_twice(load * x**2, radius)[0]).sum(axis=0)
         found = np.zeros(carries.shape)
         found[carries] = own + (load * pressed_in).sum(axis=0) - stored
         return found.reshape(shape)

@@ -49,20 +49,15 @@ _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 _PER_KNOT = (_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
 
 Outside = Callable[[NDArray[np.intp], FloatArray, FloatArray | None], SlicedContact]
-"""What presses some parts, by their numbers, at their travels into their seats, mm, and leans, rad, shape (parts, 2), from what it
-was nearby."""
+"""What presses some parts, by their numbers, at travels into their seats, mm, and leans, rad, from what it was nearby."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeatLaw(ContactLaw):
     """Load of conforming seats by their travel, with the play of each, mm, in the place of an effective radius.
 
-    Attributes
-    ----------
-    law : ConformingLaw
-        Travel by load.
-    curve : array, shape (6, pieces)
-        Level of the approach over the logarithm of the travel, both by what makes them the same for every play.
+    `curve` has the pieces, shape (6, pieces), of the level of the approach over the logarithm of the travel, both by what makes
+    them the same for every play.
     """
 
     law: ConformingLaw
@@ -180,16 +175,8 @@ class SlicedSeat(SeparateSlices):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackedLine:
-    """Contacts in slices of one kind in series with the seats of their pins or sleeves.
-
-    Attributes
-    ----------
-    contact : SlicedLine or SeparateSlices
-        Law of the surfaces in contact.
-    seat : SlicedSeat
-        Law of the seats.
-    play : array
-        Radial play of the seats, shape (pairs,) or (positions, pairs), mm.
+    """Contacts in slices of one kind in series with the seats of their pins or sleeves, of a radial play in mm, shape (pairs,)
+    or (positions, pairs).
     """
 
     contact: SlicedLine | SeparateSlices
@@ -213,13 +200,7 @@ class BackedLine:
     def solve(
         self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
     ) -> tuple[SlicedContact, FloatArray, FloatArray]:
-        """Return the same with travel, mm, and lean, rad, of the pins or sleeves in their seats, zero where open.
-
-        Raises
-        ------
-        ConvergenceError
-            When they do not settle.
-        """
+        """Return the same with travel, mm, and lean, rad, of the pins or sleeves in their seats, zero where open."""
         contact, length = self.contact, self.contact.length
         given = np.broadcast_arrays(approach, tilt, effective_radius, self.play)
         shape = given[0].shape
@@ -328,7 +309,7 @@ def newton_step(left: FloatArray, stiffness: FloatArray, half: float) -> tuple[F
     `left` and `stiffness` are the slopes of the energy and its second derivatives, `half` is half the length of the contacts, mm.
     """
     step = -np.linalg.solve(_invertible(stiffness, DAMPING * half**2), left[..., None])[..., 0]
-    return step, (left * step).sum(axis=1)
+    return np.asarray(step), np.asarray((left * step).sum(axis=1))
 
 
 def shorten_steps(
@@ -336,13 +317,8 @@ def shorten_steps(
 ) -> FloatArray:
     """Return which parts of steps are taken: the whole, or where the slope of the energy along them has nearly gone.
 
-    Parameters
-    ----------
-    slope : array, shape (steps,)
-        Slopes of the energy along the steps where they start, N·mm.
-    move : callable
-        Takes some of the steps, by their numbers, to parts of them; returns slope and second derivative of the energy there.
-        Every step is left where it was taken last.
+    `slope` is that where they start, N·mm. `move` takes some of the steps, by their numbers, to parts of them and returns slope
+    and second derivative of the energy there; every step is left where it was taken last.
     """
     fraction, low, high = np.ones(slope.size), np.zeros(slope.size), np.full(slope.size, np.inf)
     steep, rows = STEEPEST * np.abs(slope), np.arange(slope.size)

@@ -22,20 +22,11 @@ DEGREE = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConformingSeries:
-    """Arc, pressure and approach over z, from Hertz (z = 0) to the neat fit (z = 1), as Chebyshev series.
+    """Chebyshev series over z, from Hertz (z = 0) to the neat fit (z = 1).
 
-    Attributes
-    ----------
-    load_scale : float
-        π b₁², b₁ of the neat fit.
-    half_width : array
-        Of b/z.
-    pressure : array
-        Of z times the peak pressure in F/(aL).
-    approach, slope : array
-        Of the approach in F/(L E*) without its logarithm, −2/π ln z, and the first harmonic; of its derivative by z.
-    complement : array
-        Of ∫ δ dF in F²/(L E*) without its logarithm, −1/π ln z, and the first harmonic.
+    `half_width` is b/z, `pressure` z times the peak pressure in F/(aL), `approach` that in F/(L E*) without its logarithm,
+    −2/π ln z, and the first harmonic, `slope` its derivative by z, and `complement` ∫ δ dF in F²/(L E*) without the same.
+    `load_scale` is π b₁² of the neat fit.
     """
 
     load_scale: float
