@@ -56,31 +56,17 @@ def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray
     >>> bool(np.isclose(np.polyval(pieces[::-1, 2], 0.5), 2.5**4))
     True
     """
-    from scipy.interpolate import BPoly, PPoly
+    from scipy.interpolate import BSpline
 
     count = values.size
-    rise = np.diff(values)
-    before, after = slopes[:-1], slopes[1:]
-    # Third derivative at the ends of a piece: start 60 Δ − 36 y0' − 24 y1' − 9 y0'' + 3 y1'',
-    # end 60 Δ − 24 y0' − 36 y1' − 3 y0'' + 9 y1''; equal from both sides of every inner knot.
-    system = np.zeros((count, count))
-    right = np.zeros(count)
-    inner = np.arange(1, count - 1)
-    system[inner, inner - 1] = -3.0
-    system[inner, inner] = 18.0
-    system[inner, inner + 1] = -3.0
-    right[inner] = 60.0 * (rise[1:] - rise[:-1]) + 24.0 * (before[:-1] - after[1:])
-    system[0, 0] = 1.0
-    # Fourth derivative: start −360 Δ + 192 y0' + 168 y1' + 36 y0'' − 24 y1'',
-    # end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''; equal at the last knot but one.
-    knot = count - 2
-    system[-1, knot - 1 : knot + 2] = (-24.0, 0.0, 24.0)
-    left_end = 360.0 * rise[knot - 1] - 168.0 * before[knot - 1] - 192.0 * after[knot - 1]
-    right_start = -360.0 * rise[knot] + 192.0 * before[knot] + 168.0 * after[knot]
-    right[-1] = right_start - left_end
-    bends = np.linalg.solve(system, right)
-    spline = BPoly.from_derivatives(np.arange(float(count)), np.stack([values, slopes, bends], axis=1))
-    return np.ascontiguousarray(PPoly.from_bernstein_basis(spline).c[::-1])
+    knots = np.arange(float(count))
+    # Double knots leave the fourth derivative free, the single one at the last but one keeps it continuous there.
+    inner = np.repeat(knots[1:-1], 2)[:-1]
+    every = np.concatenate((np.zeros(_DEGREE + 1), inner, np.full(_DEGREE + 1, knots[-1])))
+    basis = BSpline(every, np.eye(2 * count + 1), _DEGREE)
+    system = np.concatenate((basis(knots), basis(knots, 1), basis(knots[:1], 2)))
+    spline = BSpline(every, np.linalg.solve(system, np.concatenate((values, slopes, [0.0]))), _DEGREE)
+    return np.array([spline(knots[:-1], nu=power) / factorial(power) for power in range(_DEGREE + 1)])
 
 
 def quintic(coefficients: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
