@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray, by_drive
 from ltca.beam import PinBeam
-from ltca.drive.parts import Drive, Material, PinShaft, PinWheel
+from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, WheelPinSeat
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.errors import ConvergenceError
 from ltca.laws.conforming import ConformingLaw
@@ -41,22 +41,12 @@ HALF_SPACE_DATUM = 0.7
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackedLaw(ContactLaw):
-    """Contacts of one kind in series with the seats of their pins and the bending of these.
+    """Contacts of one kind in series with the seats of their pins, or their sleeves, and the bending of these.
 
-    Attributes
-    ----------
-    contact : ContactLaw
-        Law of the surfaces in contact.
-    seat : ConformingLaw or None
-        Law of the pins, or their sleeves, in their seats.
-    play : array
-        Radial play of the seats, shape (pairs,) or (positions, pairs), mm.
-    flexibility : float
-        c of the pin's bending, mm/N; equal for all drives of a batch.
-    overlap : float
-        Compliance counted twice, mm/N: that of a sleeve below half its wall, where the law of the sleeve begins, is part of the
-        contact's law as well. It is subtracted, up to `MAX_OVERLAP` of the contact's approach; where it would be more, the
-        contact is as wide as the wall and no law holds.
+    `play` is the radial one of the seats, mm, shape (pairs,) or (positions, pairs), `flexibility` c of the pin's bending, mm/N.
+    `overlap` is the compliance counted twice, mm/N: that of a sleeve below half its wall, where the law of the sleeve begins, is
+    part of the contact's law as well. It is subtracted, up to `MAX_OVERLAP` of the contact's approach; where it would be more,
+    the contact is as wide as the wall and no law holds.
     """
 
     contact: ContactLaw
@@ -170,18 +160,14 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
         return contact
-    overlap = 0.0
-    if drive.pin_wheel.seat.kind == "sleeve":
-        overlap = sleeve_overlap(drive, drive.pin_wheel, depth or HALF_SPACE_DATUM * drive.disc.thickness)
+    overlap = sleeve_overlap(drive, drive.pin_wheel, depth or HALF_SPACE_DATUM * drive.disc.thickness)
     return BackedLaw(contact=contact, seat=seat, play=play, flexibility=own_flexibility(drive, beam), overlap=overlap)
 
 
 def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of shaft pins and holes of a drive of one disc, with the sleeves behind it.
+    """Return the law of shaft pins and holes of a drive of one disc, with the sleeves behind it, as `back_wheel_pins`.
 
-    `contact` is the law of pins, or their sleeves, and holes; `play` is that of the sleeves on their pins, shape (z_PS,) or
-    (positions, z_PS), mm. `depth` is the depth in mm down to which `contact` counts a sleeve; None where `contact` is a spring
-    that has nothing of the sleeve.
+    `depth` is None where `contact` is a spring that has nothing of the sleeve.
     """
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
@@ -197,7 +183,11 @@ def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
 
 
 def sleeve_overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
-    """Return the compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
+    """Return the compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N; zero
+    without sleeve.
+    """
+    if part.seat.kind != "sleeve":
+        return 0.0
     compliance = drive.materials.sleeve.plane_strain_compliance
     return float(2.0 * compliance * np.log(depth / _datum(drive, part)) / (np.pi * drive.disc.thickness))
 
@@ -222,43 +212,42 @@ def tip_motion(drive: Drive) -> dict[str, Any]:
 
 def own_flexibility(drive: Drive, beam: PinBeam | None) -> float:
     """Return the deflection of the pin of a drive of one disc under unit load of that disc alone, mm/N; 0 without beam."""
-    if beam is None:
-        return 0.0
-    return float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])
+    return (
+        0.0 if beam is None else float(beam.flexibility(from_start(beam, drive).tolist(), drive.disc.thickness)[0, 0])
+    )
 
 
 def shaft_pin_seat(drive: Drive) -> ConformingLaw | None:
     """Return the law of the sleeves on the shaft pins of a drive of one disc; None without sleeves."""
-    shaft = drive.pin_shaft
-    if shaft is None or shaft.seat.kind == "fixed":
-        return None
-    return _sleeve_seat(drive, shaft, drive.materials.shaft_pin)
+    return None if drive.pin_shaft is None else _seat(drive, drive.pin_shaft, drive.materials.shaft_pin)
 
 
 def wheel_pin_seat(drive: Drive) -> ConformingLaw | None:
     """Return the law of the wheel pins in their slots, or of their sleeves, of a drive of one disc; None for fixed pins."""
-    wheel, parts = drive.pin_wheel, drive.materials
-    if wheel.seat.kind == "slot":
-        radius = wheel.seat.radius or 0.0
+    return _seat(drive, drive.pin_wheel, drive.materials.wheel_pin)
+
+
+def _seat(drive: Drive, part: PinWheel | PinShaft, pin: Material) -> ConformingLaw | None:
+    """Law of pins of a material in slots of the wheel, or in sleeves."""
+    seat, length = part.seat, drive.disc.thickness
+    if isinstance(seat, WheelPinSeat) and seat.kind == "slot":
+        radius = seat.radius or 0.0
         return ConformingLaw.of_bodies(
-            pin=parts.wheel_pin,
-            bore=parts.wheel_seat,
-            pin_radius=wheel.pin_radius,
+            pin=pin,
+            bore=drive.materials.wheel_seat,
+            pin_radius=part.pin_radius,
             bore_radius=radius,
             datum_radius=SLOT_DATUM * radius,
-            length=drive.disc.thickness,
+            length=length,
         )
-    return _sleeve_seat(drive, wheel, parts.wheel_pin) if wheel.seat.kind == "sleeve" else None
-
-
-def _sleeve_seat(drive: Drive, part: PinWheel | PinShaft, pin: Material) -> ConformingLaw:
-    """Law of the sleeves on pins of a material."""
+    if seat.kind == "fixed":
+        return None
     return ConformingLaw.of_sleeve(
         pin=pin,
         sleeve=drive.materials.sleeve,
-        pin_radius=part.seat.pin_radius or 0.0,
-        bore_radius=part.seat.bore_radius or 0.0,
+        pin_radius=seat.pin_radius or 0.0,
+        bore_radius=seat.bore_radius or 0.0,
         outer_radius=part.pin_radius,
         datum=_datum(drive, part),
-        length=drive.disc.thickness,
+        length=length,
     )

@@ -29,18 +29,10 @@ from ltca.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollingRow:
-    """A row of rolling elements about its working point.
+    """A row of rolling elements about its working point, by its stiffnesses, N/mm.
 
-    Attributes
-    ----------
-    radial, axial : float
-        Stiffness, N/mm.
-    pressure_centre : float
-        Place h where the contact normals meet the axis, mm.
-    reach : float
-        Radial displacement at which the elements opposite to the load lift off, mm; infinite without preload.
-    normal_load : float
-        Sum of the normal loads of all elements by the preload, N.
+    `pressure_centre` is the place h where the contact normals meet the axis, mm, `reach` the radial displacement at which the
+    elements opposite to the load lift off, mm, and `normal_load` the sum of the normal loads of all by the preload, N.
     """
 
     radial: float

@@ -34,16 +34,8 @@ def post_stiffness(
 ) -> tuple[float, float]:
     """Return the force by unit displacement of one post's far end that does not turn, N/mm, and its moment by twist, N·mm/rad.
 
-    Parameters
-    ----------
-    length, diameter : float
-        mm.
-    youngs_modulus : float
-        MPa.
-    poisson_ratio : float
-        ν; the shear coefficient is that of Cowper (1966), 6(1 + ν)/(7 + 6ν).
-    ends : tuple of float
-        Rotation of each end by its moment, rad/(N·mm).
+    Lengths are in mm, `ends` the rotation of each end by its moment, rad/(N·mm); the shear coefficient is that of Cowper (1966),
+    6(1 + ν)/(7 + 6ν).
 
     Examples
     --------
@@ -90,10 +82,8 @@ def far_flange_stiffness(drive: Drive) -> FloatArray | None:
     ends, sheared = (0.0, 0.0), 0.0
     if carrier.flange is not None:
         near, far = carrier.flange
-        at_near, at_far = (
-            flange_compliance(thickness, posts.number, posts.radius, posts.size, modulus) for thickness in (near, far)
-        )
-        ends = at_near, at_far
+        near_end = flange_compliance(near, posts.number, posts.radius, posts.size, modulus)
+        ends = near_end, flange_compliance(far, posts.number, posts.radius, posts.size, modulus)
         if loaded := loaded_circle(drive):
             shear_modulus = modulus / (2.0 * (1.0 + ratio))
             sheared = abs(posts.radius**-2 - loaded**-2) / (4.0 * pi * shear_modulus * far)

@@ -26,6 +26,7 @@ body with the bore.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,9 +41,8 @@ SMALLEST_BREATHING = 0.02
 """Lower bound of c₀, that of a pin of ν = 0.495 in a rigid bore; a softer pin would touch its bore all round."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Seat:
-    """Dimensionless numbers of a pin and the body around it; `part` and `kappa` are those of that body.
+class _Seat(NamedTuple):
+    """Dimensionless numbers of a pin and the body around it; `part`, E*/4μ, and `kappa` are those of that body.
 
     They are rounded where series are looked up by them, so that materials that differ in the last bit share one.
     """
@@ -55,29 +55,29 @@ class _Seat:
     part: float
     first: float
 
-    @classmethod
-    def of_bodies(cls, pin: Material, bore: Material, pin_radius: float, bore_radius: float, length: float) -> _Seat:
-        if not 0.0 < pin_radius <= bore_radius:
-            raise DriveError(
-                [f"pin radius {pin_radius:g} mm: must be greater than 0 mm and at most {bore_radius:g} mm, its bore"]
-            )
-        if not length > 0.0:
-            raise DriveError([f"length {length:g} mm of a seat: must be greater than 0 mm"])
-        modulus = contact_modulus(pin, bore)
-        pin_kappa, kappa = (3.0 - 4.0 * part.poisson_ratio for part in (pin, bore))
-        # E*/4μ of each body
-        pin_part, part = (0.5 * modulus * (1.0 + part.poisson_ratio) / part.youngs_modulus for part in (pin, bore))
-        between = (kappa + 1.0) * part - (pin_kappa + 1.0) * pin_part
-        return cls(
-            modulus=modulus,
-            radius=float(np.sqrt(pin_radius * bore_radius)),
-            mismatch=round(0.5 * ((pin_kappa - 1.0) * pin_part - (kappa - 1.0) * part), 12),
-            breathing=round(max((pin_kappa - 1.0) * pin_part + 2.0 * part, SMALLEST_BREATHING), 12),
-            kappa=kappa,
-            part=round(part, 12),
-            # Near the load each body follows the logarithm of its radius, not of a, which counts where the play is wide.
-            first=0.5 * ((pin_kappa - 1.0) * pin_part + between * np.log(bore_radius / pin_radius)),
+
+def _seat(pin: Material, bore: Material, pin_radius: float, bore_radius: float, length: float) -> _Seat:
+    """Numbers of a pin in a bore; DriveError where radii or length leave no such bodies."""
+    if not 0.0 < pin_radius <= bore_radius:
+        raise DriveError(
+            [f"pin radius {pin_radius:g} mm: must be greater than 0 mm and at most {bore_radius:g} mm, its bore"]
         )
+    if not length > 0.0:
+        raise DriveError([f"length {length:g} mm of a seat: must be greater than 0 mm"])
+    modulus = contact_modulus(pin, bore)
+    pin_kappa, kappa = (3.0 - 4.0 * part.poisson_ratio for part in (pin, bore))
+    pin_part, part = (0.5 * modulus * (1.0 + part.poisson_ratio) / part.youngs_modulus for part in (pin, bore))
+    between = (kappa + 1.0) * part - (pin_kappa + 1.0) * pin_part
+    return _Seat(
+        modulus=modulus,
+        radius=float(np.sqrt(pin_radius * bore_radius)),
+        mismatch=round(0.5 * ((pin_kappa - 1.0) * pin_part - (kappa - 1.0) * part), 12),
+        breathing=round(max((pin_kappa - 1.0) * pin_part + 2.0 * part, SMALLEST_BREATHING), 12),
+        kappa=kappa,
+        part=round(part, 12),
+        # Near the load each body follows the logarithm of its radius, not of a, which counts where the play is wide.
+        first=0.5 * ((pin_kappa - 1.0) * pin_part + between * np.log(bore_radius / pin_radius)),
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,20 +85,8 @@ class ConformingLaw:
     """Law of one pin in one bore, for any play small compared with the radius.
 
     Loads are in N, at least 0, and plays (bore radius less pin radius) in mm, at least 0; they broadcast. Approaches are the
-    travel of the pin from where it touches, relative to the datum.
-
-    Attributes
-    ----------
-    length : float
-        mm.
-    radius : float
-        a, mm.
-    contact_modulus : float
-        E*, MPa.
-    first_harmonic : float
-        Approach of the harmonic n = 1, datum included, in F/(L E*).
-    series : ConformingSeries
-        Of the materials.
+    travel of the pin from where it touches, relative to the datum. `length` and `radius`, a, are in mm, `contact_modulus`, E*, in
+    MPa; `first_harmonic` is the approach of the harmonic n = 1, datum included, in F/(L E*).
     """
 
     length: float
@@ -126,7 +114,7 @@ class ConformingLaw:
         """
         if not datum_radius >= bore_radius:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
-        seat = _Seat.of_bodies(pin, bore, pin_radius, bore_radius, length)
+        seat = _seat(pin, bore, pin_radius, bore_radius, length)
         yielding = 2.0 * seat.kappa / (seat.kappa + 1.0) * np.log(datum_radius / bore_radius) + 0.5
         return cls._of_seat(seat, length, yielding)
 
@@ -153,7 +141,7 @@ class ConformingLaw:
             raise DriveError(
                 [f"outer radius {outer_radius:g} mm of a sleeve: must be greater than {bore_radius:g} mm, its bore"]
             )
-        seat = _Seat.of_bodies(pin, sleeve, pin_radius, bore_radius, length)
+        seat = _seat(pin, sleeve, pin_radius, bore_radius, length)
         kappa, ratio = round(seat.kappa, 12), round(bore_radius / outer_radius, 12)
         wall = sleeve_wall(kappa, ratio)
         yielding = wall.own[1] - wall.back[1] + (kappa + 1.0) * np.log(outer_radius / datum)
@@ -178,10 +166,14 @@ class ConformingLaw:
         scale = self.series.load_scale * self.contact_modulus * np.asarray(play, dtype=float)
         return force, np.sqrt(force / (force + scale))
 
+    def _level(self, z: FloatArray) -> FloatArray:
+        """Approach in F/(L E*)."""
+        return self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
+
     def approach_and_compliance(self, load: ArrayLike, play: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the approach at a load and its derivative, mm and mm/N; the derivative is unbounded at no load."""
         force, z = self._place(load, play)
-        level = self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
+        level = self._level(z)
         # F dz/dF = z (1 − z²)/2
         bend = 0.5 * (1.0 - z**2) * (z * self.series.evaluate(self.series.slope, z) - 2.0 / np.pi)
         approach = np.where(np.asarray(load) > 0.0, force * level / self.contact_modulus, 0.0)
@@ -190,10 +182,8 @@ class ConformingLaw:
     def energy(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
         """Return ∫ F dδ = F δ − ∫ δ dF, N·mm."""
         force, z = self._place(load, play)
-        unit = self.length / self.contact_modulus * force**2
-        approach = self.first_harmonic - 2.0 / np.pi * np.log(z) + self.series.evaluate(self.series.approach, z)
         complement = 0.5 * self.first_harmonic - np.log(z) / np.pi + self.series.evaluate(self.series.complement, z)
-        return np.asarray(unit * (approach - complement))
+        return np.asarray(self.length / self.contact_modulus * force**2 * (self._level(z) - complement))
 
     def half_angle(self, load: ArrayLike, play: ArrayLike) -> FloatArray:
         """Return half the arc of contact on the radius a, rad."""

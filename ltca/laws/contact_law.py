@@ -55,32 +55,15 @@ class ContactLaw(ABC):
         """
         return self
 
-    def approach_at_load(
-        self, load: FloatArray, effective_radius: ArrayLike, start: FloatArray | None = None
-    ) -> tuple[FloatArray, FloatArray]:
+    def approach_at_load(self, load: FloatArray, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the approach at a load and its derivative, mm and mm/N; zero where there is no load.
 
-        Parameters
-        ----------
-        load : array
-            N.
-        effective_radius : array
-            mm.
-        start : array, optional
-            Approaches at loads that differ little, mm; those that are not positive are no start.
-
-        Raises
-        ------
-        ConvergenceError
-            When Newton's method, which needs a convex law, does not settle.
+        ConvergenceError where Newton's method, which needs a convex law, does not settle.
         """
         force, radius = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(effective_radius, dtype=float))
         loaded = force > 0.0
         law, force, radius = self.take(loaded.shape, loaded), force[loaded], radius[loaded]
         approach = np.full(force.shape, 1e-3)
-        if start is not None:
-            near = np.broadcast_to(start, loaded.shape)[loaded]
-            approach = np.where(near > 0.0, near, approach)
         history: list[float] = []
         for _ in range(MAX_ITERATIONS):
             carried, stiffness = law.load_and_stiffness(approach, radius)

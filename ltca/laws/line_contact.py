@@ -32,16 +32,8 @@ TABLE = Path(__file__).with_name("line_contact.json")
 
 @dataclass(frozen=True, slots=True)
 class LineContactTable:
-    """The dimensionless law of uncrowned line contact, as curves over X = ln(ρδ/L²).
-
-    Attributes
-    ----------
-    inverse_energy : SlendernessCurve
-        E* L δ² / U.
-    inverse_square_pressure : SlendernessCurve
-        E*² δ / (ρ p²) of the mid-width pressure.
-    inverse_square_half_width : SlendernessCurve
-        ρδ / b².
+    """The dimensionless law of uncrowned line contact, as curves over X = ln(ρδ/L²): E* L δ²/U of the energy, E*² δ/(ρ p²) of the
+    mid-width pressure and ρδ/b² of the half-width.
     """
 
     inverse_energy: SlendernessCurve

@@ -13,11 +13,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ltca.arrays import BoolArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.contact.pressure_cells import PatchSolution, end_grading, extrapolate, solve_cylinder_patch
 from ltca.drive.parts import LengthProfile
 from ltca.errors import CycloError
@@ -79,18 +80,8 @@ class RadiusRangeError(CycloError):
 
 @dataclass(frozen=True, slots=True)
 class ProfiledTable:
-    """Piece coefficients over X at every radius node.
-
-    Attributes
-    ----------
-    smallest_radius, largest_radius : float
-        Range of effective radii of the table, mm.
-    start, spacing : float
-        First knot in X and distance of the knots.
-    log_radii : ndarray, shape (r,)
-        Chebyshev nodes of ln ρ, ascending.
-    exponent, log_pressure, log_half_width : ndarray, shape (r, 6, pieces)
-        m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) at mid-width.
+    """Piece coefficients over X, shape (radii, 6, pieces), of m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) at mid-width, at Chebyshev
+    nodes of ln ρ between two radii in mm.
     """
 
     smallest_radius: float
@@ -153,32 +144,17 @@ def profiled_table(
     )
 
 
-def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[FloatArray]:
+def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[Any]:
     """Return the weight of every node for interpolation at points."""
-    weights = []
-    for i, node in enumerate(nodes):
-        weight = np.ones_like(at)
-        for j, other in enumerate(nodes):
-            if j != i:
-                weight = weight * (at - other) / (node - other)
-        weights.append(weight)
-    return weights
+    every = nodes.tolist()
+    return [np.prod([(at - other) / (node - other) for other in every if other != node], axis=0) for node in every]
 
 
 @dataclass(frozen=True, slots=True)
 class ProfiledLineContactLaw(ContactLaw):
     """Load, stiffness, energy, pressure and half-width of profiled cylinders; zeros where open.
 
-    Radii outside the range of the table are refused (`RadiusRangeError`).
-
-    Parameters
-    ----------
-    profile : Relief
-        Relief along the width.
-    contact_modulus : float
-        E*, MPa.
-    table : ProfiledTable
-        From `profiled_table`.
+    Radii outside the range of the table are refused (`RadiusRangeError`). `contact_modulus` is E*, MPa.
     """
 
     profile: Relief
@@ -194,74 +170,66 @@ class ProfiledLineContactLaw(ContactLaw):
 
     def load_and_stiffness(self, approach: ArrayLike, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Load and its exact derivative by the approach, N and N/mm."""
-        pressed, place, radius, closed = self._place(approach, effective_radius)
-        m, first, second = self._evaluate(self.table.exponent, place, radius)
+        pressed, _, (m, first, second) = self._at(self.table.exponent, approach, effective_radius)
         scale = self.contact_modulus * self.profile.length * np.exp(-m)
         load = scale * pressed * (2.0 - first)
-        return load, scale * (2.0 - 3.0 * first + first**2 - second) * closed
+        return load, scale * (2.0 - 3.0 * first + first**2 - second) * (pressed > 0.0)
 
     def energy(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """∫ F dδ in closed form, N·mm."""
-        pressed, place, radius, _ = self._place(approach, effective_radius)
-        m, _, _ = self._evaluate(self.table.exponent, place, radius)
+        pressed, _, (m, _, _) = self._at(self.table.exponent, approach, effective_radius)
         return np.asarray(self.contact_modulus * self.profile.length * pressed**2 * np.exp(-m))
 
     def mid_pressure(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Largest pressure at mid-width, MPa."""
-        pressed, place, radius, _ = self._place(approach, effective_radius)
-        logarithm, _, _ = self._evaluate(self.table.log_pressure, place, radius)
+        pressed, radius, (logarithm, _, _) = self._at(self.table.log_pressure, approach, effective_radius)
         return np.asarray(self.contact_modulus * np.sqrt(pressed / radius) * np.exp(logarithm))
 
     def half_width(self, approach: ArrayLike, effective_radius: ArrayLike) -> FloatArray:
         """Contact half-width at mid-width, mm."""
-        pressed, place, radius, _ = self._place(approach, effective_radius)
-        logarithm, _, _ = self._evaluate(self.table.log_half_width, place, radius)
+        pressed, radius, (logarithm, _, _) = self._at(self.table.log_half_width, approach, effective_radius)
         return np.asarray(np.sqrt(pressed * radius) * np.exp(logarithm))
 
-    def _place(
-        self, approach: ArrayLike, effective_radius: ArrayLike
-    ) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-        """Approach (zero where open), X (arbitrary where open), radius and the mask of closed contacts."""
+    def _at(
+        self, pieces: FloatArray, approach: ArrayLike, effective_radius: ArrayLike
+    ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, FloatArray, FloatArray]]:
+        """Approach (zero where open), radius, and a curve with slope and curvature in X (anything where open); straight beyond
+        the table.
+        """
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
         )
-        nodes = self.table
+        table = self.table
         if radius.size and (
-            radius.min() < nodes.smallest_radius * (1.0 - 1e-9) or radius.max() > nodes.largest_radius * (1.0 + 1e-9)
+            radius.min() < table.smallest_radius * (1.0 - 1e-9) or radius.max() > table.largest_radius * (1.0 + 1e-9)
         ):
             raise RadiusRangeError(
-                f"the profiled contact table holds effective radii from {nodes.smallest_radius:g} to "
-                f"{nodes.largest_radius:g} mm, asked for {radius.min():g} to {radius.max():g} mm"
+                f"the profiled contact table holds effective radii from {table.smallest_radius:g} to "
+                f"{table.largest_radius:g} mm, asked for {radius.min():g} to {radius.max():g} mm"
             )
         closed = delta > 0.0
         place = np.log(np.where(closed, delta * radius / self.profile.length**2, 1e-4))
-        return np.where(closed, delta, 0.0), place, radius, closed
-
-    def _evaluate(
-        self, pieces: FloatArray, place: FloatArray, radius: FloatArray
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Curve, slope and curvature in X at the radii given; straight beyond the table."""
-        table = self.table
         h, count = table.spacing, pieces.shape[2]
         s = (place - table.start) / h
         inside = np.clip(s, 0.0, float(count))
         beyond = (s - inside) * h
         piece = np.minimum(inside.astype(np.intp), count - 1)
-        t = inside - piece
-        total = [np.zeros_like(t) for _ in range(3)]
-        several = table.log_radii.size > 1
-        weights = _lagrange_weights(table.log_radii, np.log(radius)) if several else [np.ones(())]
-        for weight, rows in zip(weights, pieces, strict=True):
-            for sums, part in zip(total, quintic(rows.take(piece, axis=1), t), strict=True):
-                sums += weight * part
-        first, second = total[1] / h, total[2] / h**2
-        on_table = beyond == 0.0
+        value, first, second = np.zeros((3, *s.shape))
+        for weight, rows in zip(_lagrange_weights(table.log_radii, np.log(radius)), pieces, strict=True):
+            at_node = quintic(rows.take(piece, axis=1), inside - piece)
+            value, first, second = (
+                total + weight * part for total, part in zip((value, first, second), at_node, strict=True)
+            )
+        first, second = first / h, second / h**2
         # The curvature decays within about one unit of X, so the load stays continuously differentiable.
         fade = np.exp(-np.abs(beyond))
         run = np.abs(beyond) - 1.0 + fade
-        value = np.where(on_table, total[0], total[0] + first * beyond + second * run)
-        slope = np.where(on_table, first, first + second * np.sign(beyond) * (1.0 - fade))
-        return value, slope, np.where(on_table, second, second * fade)
+        curve = (
+            value + first * beyond + second * run,
+            first + second * np.sign(beyond) * (1.0 - fade),
+            second * fade,
+        )
+        return np.where(closed, delta, 0.0), radius, curve
 
 
 def law_for_profile(
@@ -281,10 +249,9 @@ def law_for_profile(
     generator = generator_profile(profile, length, radius)
     if generator is None:
         return LineContactLaw(length, contact_modulus)
-    ends = np.array([np.min(effective_radii), np.max(effective_radii)])
+    smallest, largest = float(np.min(effective_radii)), float(np.max(effective_radii))
     if on_ladder:
         step = np.log(LADDER_RATIO)
-        rungs = np.log(ends) / step
-        ends = np.exp(step * np.array([np.floor(rungs[0]), np.ceil(rungs[1])]))
-    smallest, largest = float(ends[0]), float(ends[1])
+        smallest = float(np.exp(step * np.floor(np.log(smallest) / step)))
+        largest = float(np.exp(step * np.ceil(np.log(largest) / step)))
     return ProfiledLineContactLaw.for_radii(generator, contact_modulus, smallest, largest)

@@ -34,17 +34,7 @@ ORDERS = 512
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RingBeam:
-    """A ring of rectangular section as a curved beam.
-
-    Attributes
-    ----------
-    inner_radius, outer_radius, width : float
-        mm.
-    youngs_modulus : float
-        MPa.
-    poisson_ratio : float
-        ν.
-    """
+    """A ring of rectangular section as a curved beam; lengths in mm, Young's modulus in MPa."""
 
     inner_radius: float
     outer_radius: float
@@ -226,10 +216,8 @@ def beyond_rigid_motions(modes: FloatArray, flexibility: FloatArray) -> FloatArr
 
 def _axes(angles: FloatArray) -> FloatArray:
     """Components (x, y) of the radial and of the tangential direction, shape (places, 2, 2)."""
-    return np.stack(
-        (np.stack((np.cos(angles), np.sin(angles)), axis=-1), np.stack((-np.sin(angles), np.cos(angles)), axis=-1)),
-        axis=1,
-    )
+    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.stack((cosine, sine, -sine, cosine), axis=-1).reshape(-1, 2, 2)
 
 
 def beam_flexibility(drive: Drive) -> FloatArray | None:

@@ -17,18 +17,8 @@ class SeparateSlices:
     """Law of contacts whose slices follow a law of the plane, each by its own approach.
 
     Plane strain is the near field of coefficients of finite elements, springs are what shaft pins do in the paper's model, and a
-    conforming seat is what loose pins and sleeves stand in.
-
-    Attributes
-    ----------
-    law : ContactLaw
-        Of the whole length.
-    length : float
-        L, mm.
-    slices : int
-        n.
-    relief : array, shape (slices, points)
-        h, mm: by how much lead and profile fall short at the points (`ltca.laws.sliced_contact.slice_heights`).
+    conforming seat is what loose pins and sleeves stand in. `law` is that of the whole length in mm; `relief`, shape (slices,
+    points), by how much lead and profile fall short at the points (`ltca.laws.sliced_contact.slice_heights`), mm.
     """
 
     law: ContactLaw

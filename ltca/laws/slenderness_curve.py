@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 
@@ -57,31 +56,17 @@ def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray
     >>> bool(np.isclose(np.polyval(pieces[::-1, 2], 0.5), 2.5**4))
     True
     """
-    from scipy.interpolate import BPoly, PPoly
+    from scipy.interpolate import BSpline
 
     count = values.size
-    rise = np.diff(values)
-    before, after = slopes[:-1], slopes[1:]
-    # Third derivative at the ends of a piece: start 60 Δ − 36 y0' − 24 y1' − 9 y0'' + 3 y1'',
-    # end 60 Δ − 24 y0' − 36 y1' − 3 y0'' + 9 y1''; equal from both sides of every inner knot.
-    system = np.zeros((count, count))
-    right = np.zeros(count)
-    inner = np.arange(1, count - 1)
-    system[inner, inner - 1] = -3.0
-    system[inner, inner] = 18.0
-    system[inner, inner + 1] = -3.0
-    right[inner] = 60.0 * (rise[1:] - rise[:-1]) + 24.0 * (before[:-1] - after[1:])
-    system[0, 0] = 1.0
-    # Fourth derivative: start −360 Δ + 192 y0' + 168 y1' + 36 y0'' − 24 y1'',
-    # end 360 Δ − 168 y0' − 192 y1' − 24 y0'' + 36 y1''; equal at the last knot but one.
-    knot = count - 2
-    system[-1, knot - 1 : knot + 2] = (-24.0, 0.0, 24.0)
-    left_end = 360.0 * rise[knot - 1] - 168.0 * before[knot - 1] - 192.0 * after[knot - 1]
-    right_start = -360.0 * rise[knot] + 192.0 * before[knot] + 168.0 * after[knot]
-    right[-1] = right_start - left_end
-    bends = np.linalg.solve(system, right)
-    spline = BPoly.from_derivatives(np.arange(float(count)), np.stack([values, slopes, bends], axis=1))
-    return np.ascontiguousarray(PPoly.from_bernstein_basis(spline).c[::-1])
+    knots = np.arange(float(count))
+    # Double knots leave the fourth derivative free, the single one at the last but one keeps it continuous there.
+    inner = np.repeat(knots[1:-1], 2)[:-1]
+    every = np.concatenate((np.zeros(_DEGREE + 1), inner, np.full(_DEGREE + 1, knots[-1])))
+    basis = BSpline(every, np.eye(2 * count + 1), _DEGREE)
+    system = np.concatenate((basis(knots), basis(knots, 1), basis(knots[:1], 2)))
+    spline = BSpline(every, np.linalg.solve(system, np.concatenate((values, slopes, [0.0]))), _DEGREE)
+    return np.array([spline(knots[:-1], nu=power) / factorial(power) for power in range(_DEGREE + 1)])
 
 
 def quintic(coefficients: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -118,55 +103,39 @@ class SlendernessCurve:
 
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""
-        piece, t, inside = self._locate(x)
-        c0, c1, c2, c3, c4, c5 = self.coefficients.take(piece, axis=1)
-        value = c0 + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5))))
-        return np.asarray(value if inside else self._beyond(x, value)[0])
+        return self.value_and_derivatives(x)[0]
 
     def value_and_derivatives(self, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Value, first and second derivative at ``x``, each of its shape."""
-        piece, t, inside = self._locate(x)
-        value, first, second = quintic(self.coefficients.take(piece, axis=1), t)
+        place = (x - self.start) * (1.0 / self.spacing)
+        pieces = self.coefficients.shape[1]
+        inside = place.size == 0 or (place.min() >= 0.0 and place.max() < pieces)
+        if not inside:
+            place = place.clip(0.0, float(pieces))
+        piece = np.minimum(place.astype(np.intp), pieces - 1)
+        value, first, second = quintic(self.coefficients.take(piece, axis=1), place - piece)
         inverse = 1.0 / self.spacing
         first *= inverse
         second *= inverse * inverse
         if not inside:
-            value, first, second = self._beyond(x, value, first, second)
+            self._beyond(x, value, first, second)
         return np.asarray(value), np.asarray(first), np.asarray(second)
 
-    def _locate(self, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray, bool]:
-        """Piece, local coordinate, and whether all points lie between the first and the last knot."""
-        place = (x - self.start) * (1.0 / self.spacing)
-        pieces = self.coefficients.shape[1]
-        inside = bool(place.size == 0 or (place.min() >= 0.0 and place.max() < pieces))
-        if inside:
-            piece = place.astype(np.intp)
-        else:
-            place = place.clip(0.0, float(pieces))
-            piece = np.minimum(place.astype(np.intp), pieces - 1)
-        return piece, place - piece, inside
-
-    def _beyond(self, x: FloatArray, *found: FloatArray) -> tuple[FloatArray, ...]:
-        """Replace values (and derivatives) of points beyond the knots."""
+    def _beyond(self, x: FloatArray, *results: FloatArray) -> None:
+        """Replace values and derivatives of points beyond the knots."""
         h, c = self.spacing, self.coefficients
         end = self.start + h * c.shape[1]
-        results = [np.array(item) for item in found]
         low, high = x < self.start, x > end
         if low.any():
             value, first, second = c[0, 0], c[1, 0] / h, 2.0 * c[2, 0] / h**2
             t = self.start - x[low]
-            slope = self.light_slope
-            # value'(t) = slope + bend/reach and value''(t) = −bend/reach² at t = 0
-            reach = (slope + first) / second
+            # value'(t) = light_slope + bend/reach and value''(t) = −bend/reach² at t = 0
+            reach = (self.light_slope + first) / second
             bend = -second * reach**2
             inverse = 1.0 / (reach + t)
-            parts = (
-                value + slope * t + bend * np.log1p(t / reach),
-                -slope - bend * inverse,
-                -bend * inverse**2,
-            )
-            for result, part in zip(results, parts, strict=False):
-                result[low] = part
+            results[0][low] = value + self.light_slope * t + bend * np.log1p(t / reach)
+            results[1][low] = -self.light_slope - bend * inverse
+            results[2][low] = -bend * inverse**2
         if high.any():
             powers = np.arange(_DEGREE + 1.0)
             value = c[:, -1].sum()
@@ -176,7 +145,6 @@ class SlendernessCurve:
             decay = np.exp(-t)
             whole = value * np.exp(rate * t + bend * (t - 1.0 + decay))
             slope = rate + bend * (1.0 - decay)
-            parts = (whole, whole * slope, whole * (slope**2 + bend * decay))
-            for result, part in zip(results, parts, strict=False):
-                result[high] = part
-        return tuple(results)
+            results[0][high] = whole
+            results[1][high] = whole * slope
+            results[2][high] = whole * (slope**2 + bend * decay)

@@ -83,8 +83,8 @@ class SlicedContact:
         q at the points of the slices, N/mm.
     near : array, shape (…, 2 + 3 slices) or (…, 0)
         δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
-    left : array, shape (…), or None
-        Force that may be left over of the slices, N; None of laws that leave none.
+    left : array, shape (…)
+        Force that may be left over of the slices, N; zero of laws that leave none.
     """
 
     load: FloatArray
@@ -95,14 +95,14 @@ class SlicedContact:
     slice_load: FloatArray
     line_load: FloatArray
     near: FloatArray
-    left: FloatArray | None = None
+    left: FloatArray
 
     @classmethod
     def open(cls, contacts: int, slices: int) -> SlicedContact:
         """Return a row of contacts that carry nothing."""
-        numbers = {name: np.zeros(contacts) for name in ("load", "moment", "by_approach", "by_tilt", "moment_by_tilt")}
+        names = "load", "moment", "by_approach", "by_tilt", "moment_by_tilt", "left"
         return cls(
-            **numbers,
+            **{name: np.zeros(contacts) for name in names},
             slice_load=np.zeros((contacts, slices)),
             line_load=np.zeros((contacts, slices, POINTS)),
             near=np.zeros((contacts, 2 + 3 * slices)),
@@ -111,8 +111,7 @@ class SlicedContact:
     def put(self, rows: NDArray[np.intp], part: SlicedContact) -> None:
         """Write what some of a row of contacts are now."""
         for name in self.__slots__:
-            if (values := getattr(self, name)) is not None:
-                values[rows] = getattr(part, name)
+            getattr(self, name)[rows] = getattr(part, name)
 
     def shaped(self, shape: tuple[int, ...]) -> SlicedContact:
         """Return a row of contacts in a shape."""
@@ -123,16 +122,8 @@ class SlicedContact:
     def of_separate(
         cls, approach: FloatArray, tilt: FloatArray, line_load: FloatArray, line_slope: FloatArray, length: float
     ) -> SlicedContact:
-        """Return contacts whose slices do not feel each other, from what their points carry.
-
-        Parameters
-        ----------
-        approach, tilt : array, shape (…)
-            δ, mm, and θ, rad.
-        line_load, line_slope : array, shape (…, slices, points)
-            q, N/mm, and its derivative by the approach of the point, N/mm².
-        length : float
-            L, mm.
+        """Return contacts whose slices do not feel each other, from the line load of their points, N/mm, and its derivative by
+        the approach of the point, N/mm², shape (…, slices, points).
         """
         shape, slices = line_load.shape[:-2], line_load.shape[-2]
         sums = _sums(length, slices)
@@ -151,12 +142,13 @@ class SlicedContact:
             slice_load=each[0],
             line_load=line_load,
             near=np.concatenate((approach[..., None], tilt[..., None], *each), axis=-1),
+            left=np.zeros(shape),
         )
 
     @property
     def kept(self) -> SlicedContact:
         """The contacts without what a search alone asks for."""
-        return replace(self, near=self.near[..., :0], left=None)
+        return replace(self, near=self.near[..., :0])
 
     def moved(
         self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float
@@ -167,23 +159,22 @@ class SlicedContact:
         force, moment = load[:, 0], load[:, 1] * half
         if not self.near.shape[-1]:
             return replace(self, load=force, moment=moment)
-        slices = self.slice_load.shape[-1]
-        by_approach, by_tilt = self.near[..., 2 + slices : 2 + 2 * slices], self.near[..., 2 + 2 * slices :]
+        near = self.near.copy()
+        at, leaned, loads, by_approach, by_tilt = _parts(near)
         added = approach[..., None] * by_approach + tilt[..., None] * by_tilt
+        at += approach[..., None]
+        leaned += tilt[..., None]
+        loads += added
         slice_load = np.maximum(self.slice_load + added, 0.0)  # one that opens on the way does not pull
         grown = np.divide(slice_load, self.slice_load, out=np.ones(added.shape), where=self.slice_load > 0.0)
-        near = self.near.copy()
-        near[..., 0] += approach
-        near[..., 1] += tilt
-        near[..., 2 : 2 + slices] += added
-        return replace(
-            self,
-            load=force,
-            moment=moment,
-            slice_load=slice_load,
-            line_load=self.line_load * grown[..., None],
-            near=near,
-        )
+        line_load = self.line_load * grown[..., None]
+        return replace(self, load=force, moment=moment, slice_load=slice_load, line_load=line_load, near=near)
+
+
+def _parts(near: FloatArray) -> list[FloatArray]:
+    """Views of δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ in `SlicedContact.near`."""
+    slices = (near.shape[-1] - 2) // 3
+    return np.split(near, (1, 2, 2 + slices, 2 + 2 * slices), axis=-1)
 
 
 def loads_nearby(near: FloatArray, approach: FloatArray, tilt: FloatArray) -> FloatArray:
@@ -191,8 +182,7 @@ def loads_nearby(near: FloatArray, approach: FloatArray, tilt: FloatArray) -> Fl
 
     `near` are rows of `SlicedContact.near`; slopes tell nothing beyond a change of the loads themselves.
     """
-    slices = (near.shape[1] - 2) // 3
-    load, by_approach, by_tilt = (near[:, 2 + number * slices : 2 + (number + 1) * slices] for number in range(3))
-    moved = (approach - near[:, 0])[:, None] * by_approach + (tilt - near[:, 1])[:, None] * by_tilt
+    at, leaned, load, by_approach, by_tilt = _parts(near)
+    moved = (approach[:, None] - at) * by_approach + (tilt[:, None] - leaned) * by_tilt
     trusted = (np.abs(moved) < LARGEST_EXTRAPOLATION * load.max(axis=1, keepdims=True)).all(axis=1, keepdims=True)
     return np.asarray(np.where(trusted, np.maximum(load + moved, 0.0), load))

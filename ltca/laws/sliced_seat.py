@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,20 +48,16 @@ _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
 _PER_KNOT = (_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
 
-Outside = Callable[[NDArray[np.intp], FloatArray, FloatArray, FloatArray | None], SlicedContact]
-"""What presses some parts, by their numbers, at their travels into their seats, mm, and leans, rad, from what it was nearby."""
+Outside = Callable[[NDArray[np.intp], FloatArray, FloatArray | None], SlicedContact]
+"""What presses some parts, by their numbers, at travels into their seats, mm, and leans, rad, from what it was nearby."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeatLaw(ContactLaw):
     """Load of conforming seats by their travel, with the play of each, mm, in the place of an effective radius.
 
-    Attributes
-    ----------
-    law : ConformingLaw
-        Travel by load.
-    curve : array, shape (6, pieces)
-        Level of the approach over the logarithm of the travel, both by what makes them the same for every play.
+    `curve` has the pieces, shape (6, pieces), of the level of the approach over the logarithm of the travel, both by what makes
+    them the same for every play.
     """
 
     law: ConformingLaw
@@ -108,13 +103,7 @@ class SeatLaw(ContactLaw):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedSeat(SeparateSlices):
-    """Law of conforming seats in slices, which takes plays, mm, for effective radii.
-
-    Attributes
-    ----------
-    law : SeatLaw
-        Of the whole width.
-    """
+    """Law of conforming seats in slices, which takes plays, mm, for effective radii."""
 
     law: SeatLaw
 
@@ -127,65 +116,51 @@ class SlicedSeat(SeparateSlices):
     def heaviest(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> FloatArray:
         """Return the load of the whole width at the line load of the most loaded end of seats, N, from their loads and moments.
 
-        Arrays have the shape (contacts,), N and N·mm; loads are positive.
-
-        Raises
-        ------
-        ConvergenceError
-            When no line of travel carries these.
+        Arrays have the shape (contacts,), N and N·mm; loads are positive. ConvergenceError where no line of travel carries these.
         """
         travel, lean = self.under(load, moment, play)
         return self.law.load_and_stiffness(travel + 0.5 * self.length * np.abs(lean), play)[0]
 
     def under(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return travels, mm, and leans, rad, of seats under loads and moments; arguments and errors as for `heaviest`."""
-        travel, lean = self.law.travel(load, play), np.zeros(load.shape)
 
         def outside(rows: NDArray[np.intp], *_: FloatArray | None) -> SlicedContact:
             return replace(SlicedContact.open(rows.size, 0), load=load[rows], moment=moment[rows])
 
-        self.balance(outside, play, travel, lean)
-        return travel, lean
+        moved = np.stack((self.law.travel(load, play), np.zeros(load.shape)), axis=1)
+        self.balance(outside, play, moved)
+        return moved[:, 0], moved[:, 1]
 
     def balance(
-        self,
-        outside: Outside,
-        play: FloatArray,
-        travel: FloatArray,
-        lean: FloatArray,
-        near: FloatArray | None = None,
+        self, outside: Outside, play: FloatArray, moved: FloatArray, near: FloatArray | None = None
     ) -> tuple[SlicedContact, SlicedContact]:
         """Move travels and leans, in place, to where seats carry what presses them; return contact and seat there."""
         half = 0.5 * self.length
-        contact, held = outside(np.arange(travel.size), travel, lean, near), self.respond(travel, lean, play)
+        contact, held = outside(np.arange(len(moved)), moved, near), self.respond(moved[:, 0], moved[:, 1], play)
 
         def step(going: NDArray[np.intp]) -> None:
             """Newton's step of those that go on, shortened where the energy rises again steeply at its end."""
-            begin, upright, known = travel[going], lean[going], contact.near[going]
-            by, turn, slope = newton_step(
-                (held.load - contact.load)[going],
-                (held.moment - contact.moment)[going],
-                PartStiffness.of_both(contact, held, half).take(going),
-            )
+            begin, known = moved[going], contact.near[going]
+            by, slope = newton_step(unbalanced(contact, held)[going], joint_stiffness(contact, held)[going], half)
 
             def move(some: NDArray[np.intp], fraction: FloatArray) -> tuple[FloatArray, FloatArray]:
-                rows = going[some]
-                travel[rows], lean[rows] = begin[some] + fraction * by[some], upright[some] + fraction * turn[some]
-                there = outside(rows, travel[rows], lean[rows], known[some])
-                under = self.respond(travel[rows], lean[rows], play[rows])
+                rows, along = going[some], by[some]
+                moved[rows] = begin[some] + fraction[:, None] * along
+                there = outside(rows, moved[rows], known[some])
+                under = self.respond(moved[rows, 0], moved[rows, 1], play[rows])
                 contact.put(rows, there)
                 held.put(rows, under)
-                ahead = (under.load - there.load) * by[some] + (under.moment - there.moment) * turn[some]
-                return ahead, PartStiffness.of_both(there, under, half).along(by[some], turn[some])
+                bend = np.einsum("ci,cij,cj->c", along, joint_stiffness(there, under), along)
+                return (unbalanced(there, under) * along).sum(axis=1), bend
 
             shorten_steps(slope, move)
 
         # What round-off of places, some eight lengths away, makes of a load.
         lightest = np.spacing(8.0 * self.length) * self.law.law.contact_modulus * self.length / SETTLED
-        before, history = np.full(travel.shape, np.inf), []
+        before, history = np.full(len(moved), np.inf), []
         for _ in range(MAX_ITERATIONS):
             size = np.maximum(np.maximum(held.load, contact.load), lightest)
-            left = np.maximum(np.abs(held.load - contact.load), np.abs(held.moment - contact.moment) / half) / size
+            left = np.abs(unbalanced(contact, held) / (1.0, half)).max(axis=1) / size
             history.append(float(np.max(left, initial=0.0)))
             # Nothing but what the slices leave over is left where steps no longer help.
             going = np.flatnonzero((left > SETTLED) & ~((before < ROUND_OFF) & (left >= 0.5 * before)))
@@ -200,16 +175,8 @@ class SlicedSeat(SeparateSlices):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackedLine:
-    """Contacts in slices of one kind in series with the seats of their pins or sleeves.
-
-    Attributes
-    ----------
-    contact : SlicedLine or SeparateSlices
-        Law of the surfaces in contact.
-    seat : SlicedSeat
-        Law of the seats.
-    play : array
-        Radial play of the seats, shape (pairs,) or (positions, pairs), mm.
+    """Contacts in slices of one kind in series with the seats of their pins or sleeves, of a radial play in mm, shape (pairs,)
+    or (positions, pairs).
     """
 
     contact: SlicedLine | SeparateSlices
@@ -233,19 +200,12 @@ class BackedLine:
     def solve(
         self, approach: FloatArray, tilt: FloatArray, effective_radius: FloatArray, start: FloatArray | None = None
     ) -> tuple[SlicedContact, FloatArray, FloatArray]:
-        """Return the same with travel, mm, and lean, rad, of the pins or sleeves in their seats, zero where open.
-
-        Raises
-        ------
-        ConvergenceError
-            When they do not settle.
-        """
+        """Return the same with travel, mm, and lean, rad, of the pins or sleeves in their seats, zero where open."""
         contact, length = self.contact, self.contact.length
         given = np.broadcast_arrays(approach, tilt, effective_radius, self.play)
         shape = given[0].shape
         delta, theta, radius, play = (each.reshape(-1) for each in given)
-        whole = SlicedContact.open(delta.size, contact.slices)
-        travel, lean = np.zeros(delta.size), np.zeros(delta.size)
+        whole, moved = SlicedContact.open(delta.size, contact.slices), np.zeros((delta.size, 2))
         # An open contact that a relief keeps open is found so by its law.
         reach = delta + slice_heights(length, contact.slices).max() * np.abs(theta) - contact.relief.min(initial=0.0)
         closed = np.flatnonzero(reach > TOUCHING * length)
@@ -253,17 +213,15 @@ class BackedLine:
             near = None if start is None else start.reshape(-1, start.shape[-1])[closed]
             law = contact.take(shape, np.unravel_index(closed, shape))
             delta, theta, radius, play = (each[closed] for each in (delta, theta, radius, play))
-            into, leaned = self._begin(delta, theta, play, near)
+            begin = self._begin(delta, theta, play, near)
 
-            def outside(
-                rows: NDArray[np.intp], travel: FloatArray, lean: FloatArray, known: FloatArray | None
-            ) -> SlicedContact:
+            def outside(rows: NDArray[np.intp], moved: FloatArray, known: FloatArray | None) -> SlicedContact:
                 one = law.take((closed.size,), (rows,))
-                return one.respond(delta[rows] - travel, theta[rows] - lean, radius[rows], known)
+                return one.respond(delta[rows] - moved[:, 0], theta[rows] - moved[:, 1], radius[rows], known)
 
-            whole.put(closed, _in_series(*self.seat.balance(outside, play, into, leaned, near), 0.5 * length))
-            travel[closed], lean[closed] = into, leaned
-        return whole.shaped(shape), travel.reshape(shape), lean.reshape(shape)
+            whole.put(closed, _in_series(*self.seat.balance(outside, play, begin, near), 0.5 * length))
+            moved[closed] = begin
+        return whole.shaped(shape), moved[:, 0].reshape(shape), moved[:, 1].reshape(shape)
 
     def energy(self, contact: SlicedContact, effective_radius: FloatArray) -> FloatArray:
         """Return the energy of contacts and their seats, N·mm, shape (…)."""
@@ -276,13 +234,11 @@ class BackedLine:
         found[presses] += self.seat.energy(self.seat.respond(travel, lean, play), play)
         return found
 
-    def _begin(
-        self, delta: FloatArray, theta: FloatArray, play: FloatArray, start: FloatArray | None
-    ) -> tuple[FloatArray, FloatArray]:
+    def _begin(self, delta: FloatArray, theta: FloatArray, play: FloatArray, start: FloatArray | None) -> FloatArray:
         """Travel and lean to start from: under the loads of a neighbour's slices, by least squares over what carries."""
-        travel, lean = 0.5 * delta, 0.5 * theta
+        moved = 0.5 * np.stack((delta, theta), axis=1)
         if start is None:
-            return travel, lean
+            return moved
         slices, length = self.contact.slices, self.contact.length
         loads = start[:, 2 : 2 + slices]
         known = np.flatnonzero(np.count_nonzero(loads > 0.0, axis=1) > 2)  # a line through two slices says little
@@ -291,27 +247,12 @@ class BackedLine:
         z, total = slice_heights(length, slices).mean(axis=1), loads.sum(axis=1)
         middle, mean = (loads @ z) / total, (loads * own).sum(axis=1) / total
         apart = z - middle[:, None]
-        leaned = (loads * apart * own).sum(axis=1) / (loads * apart**2).sum(axis=1)
-        into = mean - leaned * middle
+        lean = (loads * apart * own).sum(axis=1) / (loads * apart**2).sum(axis=1)
+        travel = mean - lean * middle
         # What was there may leave nothing pressed outside here.
-        held = delta[known] - into + 0.5 * length * np.abs(theta[known] - leaned) > 0.0
-        travel[known[held]], lean[known[held]] = into[held], leaned[held]
-        return travel, lean
-
-
-def _in_series(contact: SlicedContact, seat: SlicedContact, half: float) -> SlicedContact:
-    """The contact with the derivatives of both."""
-    own = np.empty((contact.load.size, 2, 2))
-    own[:, 0, 0], own[:, 1, 1] = contact.by_approach, contact.moment_by_tilt
-    own[:, 0, 1] = own[:, 1, 0] = contact.by_tilt
-    # What a relief keeps open although middle or ends overlap carries nothing and has no stiffness.
-    found = own - np.matmul(own, np.linalg.solve(PartStiffness.of_both(contact, seat, half).matrix, own))
-    return replace(
-        contact,
-        by_approach=found[:, 0, 0],
-        by_tilt=0.5 * (found[:, 0, 1] + found[:, 1, 0]),
-        moment_by_tilt=found[:, 1, 1],
-    )
+        held = delta[known] - travel + 0.5 * length * np.abs(theta[known] - lean) > 0.0
+        moved[known[held]] = np.stack((travel, lean), axis=1)[held]
+        return moved
 
 
 def back_line(
@@ -323,58 +264,52 @@ def back_line(
     return BackedLine(contact=contact, seat=SlicedSeat.of_law(seat, contact.slices), play=play)
 
 
-class PartStiffness(NamedTuple):
-    """Second derivatives of the energy by place and lean, N/mm, N/rad and N·mm/rad."""
-
-    place: FloatArray
-    mixed: FloatArray
-    lean: FloatArray
-    half: float
-    """Half of the length of the contacts, mm."""
-
-    @classmethod
-    def of_both(cls, contact: SlicedContact, seat: SlicedContact, half: float) -> PartStiffness:
-        """Return those of parts between a contact and a seat, by travel and lean."""
-        mixed, lean = contact.by_tilt + seat.by_tilt, contact.moment_by_tilt + seat.moment_by_tilt
-        return cls(contact.by_approach + seat.by_approach, mixed, lean, half)
-
-    def take(self, rows: NDArray[np.intp]) -> PartStiffness:
-        """Return those of some parts."""
-        return PartStiffness(self.place[rows], self.mixed[rows], self.lean[rows], self.half)
-
-    def along(self, step: FloatArray, turn: FloatArray) -> FloatArray:
-        """Return the second derivative along steps, N·mm."""
-        return np.asarray(step * (self.place * step + 2.0 * self.mixed * turn) + self.lean * turn**2)
-
-    @property
-    def matrix(self) -> FloatArray:
-        """Matrices of place and lean, shape (parts, 2, 2); those of parts that nothing holds are one."""
-        found = np.empty((self.place.size, 2, 2))
-        found[:, 0, 0], found[:, 1, 1] = self.place, self.lean + LEAST_TURNING * self.half**2 * self.place
-        found[:, 0, 1] = found[:, 1, 0] = self.mixed
-        found[self.place <= 0.0] = np.eye(2)
-        return found
+def unbalanced(contact: SlicedContact, seat: SlicedContact) -> FloatArray:
+    """Return the force and moment of seats less those that press them, N and N·mm, shape (contacts, 2)."""
+    return np.stack((seat.load - contact.load, seat.moment - contact.moment), axis=1)
 
 
-def newton_step(
-    force: FloatArray, moment: FloatArray, stiffness: PartStiffness
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return Newton's step of place, mm, and lean, rad, of parts, and the slope of the energy along it, N·mm.
+def stiffness_of(contact: SlicedContact) -> FloatArray:
+    """Return derivatives of load and moment by approach and tilt, N/mm, N/rad and N·mm/rad, shape (contacts, 2, 2)."""
+    values = contact.by_approach, contact.by_tilt, contact.by_tilt, contact.moment_by_tilt
+    return np.stack(values, axis=1).reshape(-1, 2, 2)
 
-    Parameters
-    ----------
-    force, moment : array, shape (parts,)
-        Slopes of the energy by place and lean, N and N·mm.
-    stiffness : PartStiffness
-        Second derivatives there.
+
+def joint_stiffness(contact: SlicedContact, seat: SlicedContact) -> FloatArray:
+    """Return second derivatives of the energy by travel and lean, N/mm, N/rad and N·mm/rad, shape (contacts, 2, 2)."""
+    return stiffness_of(contact) + stiffness_of(seat)
+
+
+def _invertible(stiffness: FloatArray, turning: float) -> FloatArray:
+    """Stiffnesses with some of that of the place against leaning, mm²; one where nothing touches."""
+    found = stiffness.copy()
+    found[:, 1, 1] += turning * found[:, 0, 0]
+    found[stiffness[:, 0, 0] <= 0.0] = np.eye(2)
+    return found
+
+
+def _in_series(contact: SlicedContact, seat: SlicedContact, half: float) -> SlicedContact:
+    """The contact with the derivatives of both."""
+    own = stiffness_of(contact)
+    # What a relief keeps open although middle or ends overlap carries nothing and has no stiffness.
+    both = _invertible(joint_stiffness(contact, seat), LEAST_TURNING * half**2)
+    found = own - np.matmul(own, np.linalg.solve(both, own))
+    return replace(
+        contact,
+        by_approach=found[:, 0, 0],
+        by_tilt=0.5 * (found[:, 0, 1] + found[:, 1, 0]),
+        moment_by_tilt=found[:, 1, 1],
+        left=np.zeros(contact.left.shape),
+    )
+
+
+def newton_step(left: FloatArray, stiffness: FloatArray, half: float) -> tuple[FloatArray, FloatArray]:
+    """Return Newton's step of travel, mm, and lean, rad, shape (parts, 2), and the slope of the energy along it, N·mm.
+
+    `left` and `stiffness` are the slopes of the energy and its second derivatives, `half` is half the length of the contacts, mm.
     """
-    stiff, mixed, turning, half = stiffness
-    turning = turning + DAMPING * half**2 * stiff
-    held = stiff > 0.0
-    determinant = np.where(held, stiff * turning - mixed**2, 1.0)
-    turn = -(stiff * moment - mixed * force) / determinant
-    step = -(force + mixed * turn) / np.where(held, stiff, 1.0)
-    return step, turn, np.asarray(force * step + moment * turn)
+    step = -np.linalg.solve(_invertible(stiffness, DAMPING * half**2), left[..., None])[..., 0]
+    return np.asarray(step), np.asarray((left * step).sum(axis=1))
 
 
 def shorten_steps(
@@ -382,13 +317,8 @@ def shorten_steps(
 ) -> FloatArray:
     """Return which parts of steps are taken: the whole, or where the slope of the energy along them has nearly gone.
 
-    Parameters
-    ----------
-    slope : array, shape (steps,)
-        Slopes of the energy along the steps where they start, N·mm.
-    move : callable
-        Takes some of the steps, by their numbers, to parts of them; returns slope and second derivative of the energy there.
-        Every step is left where it was taken last.
+    `slope` is that where they start, N·mm. `move` takes some of the steps, by their numbers, to parts of them and returns slope
+    and second derivative of the energy there; every step is left where it was taken last.
     """
     fraction, low, high = np.ones(slope.size), np.zeros(slope.size), np.full(slope.size, np.inf)
     steep, rows = STEEPEST * np.abs(slope), np.arange(slope.size)

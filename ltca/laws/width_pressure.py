@@ -18,6 +18,7 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.contact_kind import ContactKind
 from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.free_end import FreeEnds, remaining_bulge
+from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchPressure
 from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
 from ltca.laws.sliced_line import SlicedLine
@@ -62,16 +63,8 @@ class WidthPressures:
 
 
 def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
-    """Return pressures of contacts in slices by their line loads, at the middles of the slices.
-
-    Parameters
-    ----------
-    kind : ContactKind
-        Kind of the contacts.
-    line_load : array, shape (…, slices, points)
-        Of the contacts at the points of their slices (`ltca.laws.sliced_line.SlicedContact`), N/mm.
-    effective_radius : array
-        ρ, mm, broadcasts to (…).
+    """Return pressures of contacts in slices at the middles of the slices, from their line loads, N/mm, at the points of these,
+    shape (…, slices, points), and effective radii, mm, which broadcast to (…).
     """
     line = line_load
     radius = np.broadcast_to(effective_radius, line.shape[:-2])
@@ -85,21 +78,15 @@ def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_rad
     # What the two slices at an end carry beyond the line is the bulge there, by aligned lines of as many slices.
     nodes, bulges = _end_bulges(line.shape[-2], kind.free_ends)
     size = kind.length / line.shape[-2]
-    carried = []
-    for last, beside, outermost in (
-        (even[..., 0], even[..., 1], line[..., 0, 0]),
-        (even[..., -1], even[..., -2], line[..., -1, -1]),
-    ):
-        own, second = last, beside
-        for _ in range(3):
-            wide = np.log(np.maximum(np.sqrt(4.0 * own * radius / (np.pi * kind.contact_modulus)) / size, 1e-300))
-            own, second = (
-                carries / np.interp(wide, nodes, bulge) for carries, bulge in zip((last, beside), bulges, strict=True)
-            )
-        carried.append(np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - second), 0.0), 0.0))
-    ends = np.stack(carried, axis=-1)
+    last, beside, curved = even[..., [0, -1]], even[..., [1, -2]], radius[..., None]
+    outermost = np.stack((line[..., 0, 0], line[..., -1, -1]), axis=-1)
+    own, second = last, beside
+    for _ in range(3):
+        wide = np.log(np.maximum(line_half_width(own, curved, kind.contact_modulus) / size, 1e-300))
+        own, second = last / np.interp(wide, nodes, bulges[0]), beside / np.interp(wide, nodes, bulges[1])
+    ends = np.where(outermost > 0.0, np.maximum(own + 0.5 * (own - second), 0.0), 0.0)
     # An end carries as one of a line that is even and long has its peak by the half-width there.
-    half_width = np.sqrt(4.0 * ends * radius[..., None] / (np.pi * kind.contact_modulus))
+    half_width = line_half_width(ends, curved, kind.contact_modulus)
     peak = find_cylinder_ratio(kind, half_width) - 1.0
     if kind.free_ends:
         peak = peak * remaining_bulge(kind.free_ends, (half_width + kind.end_cell) / kind.length) ** PEAK_BY_BULGE
@@ -211,7 +198,7 @@ def _bulges(kind: ContactKind, line_load: FloatArray, radius: FloatArray, carrie
     slices = line_load.shape[-1]
     nodes, shares = _aligned_loads(slices, kind.free_ends)
     mean = line_load.mean(axis=-1)
-    wide = np.maximum(np.sqrt(4.0 * mean * radius / (np.pi * kind.contact_modulus)) / kind.length, 1e-300)
+    wide = np.maximum(line_half_width(mean, radius, kind.contact_modulus) / kind.length, 1e-300)
     at = np.log(wide).clip(nodes[0], nodes[-1])
     before = np.clip(np.searchsorted(nodes, at) - 1, 0, nodes.size - 2)
     part = ((at - nodes[before]) / (nodes[before + 1] - nodes[before]))[..., None]

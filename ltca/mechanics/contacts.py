@@ -508,8 +508,7 @@ class Linearised:
                     strict=True,
                 ):
                     values[:, kind] = mine
-                if one.left is not None and one.left.size:
-                    self.law_left = np.maximum(self.law_left, one.left.max(axis=1))
+                self.law_left = np.maximum(self.law_left, one.left.max(axis=1, initial=0.0))
                 found.append(one)
             self.sliced.append(found)
 

@@ -248,6 +248,7 @@ class GridLaw(ContactLaw):
             slice_load=slice_load,
             near=np.empty((*delta.shape, 0)),
             line_load=line_load,
+            left=np.zeros(delta.shape),
         )
 
 

@@ -33,18 +33,10 @@ QUADRATURE = 80
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArcSolution:
-    """Contact over a given arc, in units of the load: p in F/(aL), displacements in F/(L E*).
+    """Contact over a given arc, b = tan(α/2), in units of the load: p in F/(aL), displacements in F/(L E*).
 
-    Attributes
-    ----------
-    half_width : float
-        b = tan(α/2).
-    play : float
-        ΔR at which this arc is in contact; negative beyond the arc of the neat fit.
-    approach : float
-        Without the first harmonic.
-    coefficients : array, shape (FUNCTIONS,)
-        Of √(1 − s²) U_2k(s) in the pressure.
+    `play` is ΔR at which this arc is in contact, negative beyond the arc of the neat fit; `approach` is without the first
+    harmonic; `coefficients` are those of √(1 − s²) U_2k(s) in the pressure.
     """
 
     half_width: float

@@ -25,16 +25,9 @@ MAX_HARMONICS = 600
 class SleeveWall:
     """Harmonics 0, 1, 2 … of a sleeve, displacements in a/4μ.
 
-    Attributes
-    ----------
-    own : array
-        Inside by pₙ, less that of the infinite body; n = 1: all of it, in the frame in which the uniform part of both is zero.
-    across : array
-        Inside by the force outside, in F/(aL).
-    back : array
-        Outside at θ = 0 by pₙ.
-    outside : float
-        Outside at θ = 0 by the force outside, inward, in F/(aL), less that of the half-plane down to the distance R.
+    `own` are those inside by pₙ, less those of the infinite body (n = 1: all of it, in the frame in which the uniform part of
+    both is zero), `across` those inside by the force outside, in F/(aL), `back` those outside at θ = 0 by pₙ, and `outside`
+    that there by the force outside, inward, in F/(aL), less that of the half-plane down to the distance R.
     """
 
     own: FloatArray

@@ -14,7 +14,7 @@ from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.separate_slices import SeparateSlices
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
-from ltca.laws.sliced_seat import MAX_TRIALS, BackedLine, PartStiffness, SlicedSeat, newton_step, shorten_steps
+from ltca.laws.sliced_seat import MAX_TRIALS, BackedLine, SlicedSeat, newton_step, shorten_steps
 from ltca.laws.spring import SpringLaw
 from ltca.reading.drive_file import load_drive
 
@@ -210,8 +210,9 @@ def test_steps_end_where_a_slice_begins_to_carry():
 def test_what_touches_at_one_end_alone_is_not_sent_far():
     """Both contacts at the same end: turning about it costs nothing, and what is left over there is round-off."""
     half, stiff = 5.0, 1e5
-    free = PartStiffness(*(np.array([value]) for value in (stiff, stiff * half, stiff * half**2)), half)
-    step, turn, slope = newton_step(np.array([1e-3]), np.array([1e-3 * half + 1e-8]), free)
+    free = stiff * np.array([[[1.0, half], [half, half**2]]])
+    moved, slope = newton_step(np.array([[1e-3, 1e-3 * half + 1e-8]]), free, half)
+    step, turn = moved.T
     # Along the stiff mode a thousandth of a newton is 1e-8 mm; the free one is held by a millionth of that stiffness.
     assert abs(step[0] + half * turn[0]) == pytest.approx(1e-8, rel=1e-2)
     assert half * abs(turn[0]) < 1e-7
