@@ -638,6 +638,16 @@ class Linearised:
         changed = np.abs(self.change).sum(axis=1)
         matters = changed > LEAST_CHANGE * self.load[:, 0].max(axis=1, initial=0.0)[:, None]
         self.moved = np.max(np.where(matters & (stiffness[0] > 0.0), moved, 0.0), axis=1, initial=0.0)
+        if self.system.deforms:
+            self.moved = np.maximum(self.moved, self._closed)
+
+    @property
+    def _closed(self) -> FloatArray:
+        """How deep the correction presses what is open, mm: a roller is pressed where its whole play is."""
+        after = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
+        for _, bores, _, races in self.at:
+            after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
+        return np.asarray(np.max(np.where(self.chosen_stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
 
     @property
     def onward(self) -> Start:
