@@ -12,7 +12,7 @@ from ltca.arrays import FloatArray
 from ltca.contact.free_end import FreeEnds, free_ends_of
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Disc, Drive, Material, contact_modulus
-from ltca.geometry.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
+from ltca.geometry.length_profile import Relief, generator_profile, has_lead, lead_relief
 
 Departure = Callable[[FloatArray], FloatArray]
 
@@ -32,7 +32,7 @@ class ContactKind:
         Length of the contact line, mm.
     contact_modulus : float
         E*, MPa.
-    generator : SummedProfile or None
+    generator : Relief or None
         Crown and relief along the length; None for cylinders.
     symmetric : bool
         Whether the separation is even along the profile (circles) or not (flanks).
@@ -46,7 +46,7 @@ class ContactKind:
 
     length: float
     contact_modulus: float
-    generator: SummedProfile | None
+    generator: Relief | None
     symmetric: bool
     cells: int = CELLS
     lead: Disc | None = None
@@ -86,7 +86,7 @@ class ContactKinds:
         def kind(
             length: float,
             bodies: tuple[Material, Material],
-            generator: SummedProfile | None = None,
+            generator: Relief | None = None,
             *,
             flank: bool = False,
         ) -> ContactKind:

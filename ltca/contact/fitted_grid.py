@@ -24,7 +24,7 @@ from ltca.contact.pressure_cells import (
     graded_edges,
     solve_patch,
 )
-from ltca.geometry.length_profile import SummedProfile
+from ltca.geometry.length_profile import Relief
 
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
@@ -82,7 +82,7 @@ def smooth_step(part: float) -> float:
     return part * part * (3.0 - 2.0 * part)
 
 
-def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:
+def find_reach_place(length: float, generator: Relief | None, approach: float) -> float:
     """Return ln(body length/overlap) in rungs: how far a profiled contact ends before the body does."""
     if generator is None:
         return 0.0

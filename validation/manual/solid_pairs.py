@@ -27,7 +27,7 @@ from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.pressure_cells import PatchSolution, solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
 from ltca.drive.parts import Material, contact_modulus
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from validation.levels.other_code_problems import CODES, CROWNED_PAIRS
 from validation.levels.other_codes import compare_answers, stored_answer
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
@@ -253,9 +253,7 @@ CROWN_RADIUS, CROWN_LENGTH, CROWN_DROP, CROWN_LOAD, TILT = 10.0, 8.0, 0.01, 1500
 CROWN_SIZES = (2.8, 2.0, 1.4)
 NEAR, FAR_SIZE = 12.0, 4.0
 """Depth of the blocks, mm, and the size with which what is beyond them is found."""
-CROWN = SummedProfile(
-    length=CROWN_LENGTH, parts=(CircularCrown(length=CROWN_LENGTH, crown_radius=CROWN_LENGTH**2 / (8.0 * CROWN_DROP)),)
-)
+CROWN = Relief(length=CROWN_LENGTH, crown_radius=CROWN_LENGTH**2 / (8.0 * CROWN_DROP))
 
 
 @cache

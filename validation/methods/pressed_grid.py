@@ -37,11 +37,11 @@ from ltca.contact.fitted_grid import (
 )
 from ltca.contact.pressure_cells import PatchPressure
 from ltca.contact.unilateral import solve_unilateral_contact
-from ltca.geometry.length_profile import SummedProfile
+from ltca.geometry.length_profile import Relief
 
 
 def find_shares(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+    length: float, generator: Relief | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
     """Return the grids of a contact and the share of each in its load, for ρ and δ in mm and a contact line of `length`, mm.
 
@@ -66,7 +66,7 @@ def find_shares(
 
 
 def find_share_slopes(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+    length: float, generator: Relief | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
     """Return the derivatives of the shares by the approach, 1/mm, for the arguments of `find_shares`.
 

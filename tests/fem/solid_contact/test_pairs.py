@@ -15,7 +15,7 @@ from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
 from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import DriveError
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from validation.methods.grid_pressures import solve_along_width
@@ -134,7 +134,7 @@ def test_energy_gaps_and_files_of_a_pair(roller):
 
 
 LENGTH, RADIUS, DROP, LOAD, TILT = 8.0, 10.0, 0.01, 1500.0, 3e-4
-CROWN = SummedProfile(length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * DROP)),))
+CROWN = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * DROP))
 
 
 def half_space(tilt):
