@@ -28,18 +28,14 @@ class ContactKind:
 
     Attributes
     ----------
-    length : float
-        Length of the contact line, mm.
-    contact_modulus : float
-        E*, MPa.
-    generator : Relief or None
-        Crown and relief along the length; None for cylinders.
+    length, contact_modulus : float
+        Length of the contact line, mm, and E*, MPa.
+    generator, lead : Relief or None, Disc or None
+        Crown and relief along the length, and the disc whose flank has a lead; None where they are straight.
     symmetric : bool
         Whether the separation is even along the profile (circles) or not (flanks).
     cells : int
         Cells over the half-width and over half the length.
-    lead : Disc or None
-        Disc whose flank has a lead; None where it is straight.
     free_ends : tuple of FreeEnds
         Of the bodies, which the law in slices knows; half-spaces where there are none.
     """
@@ -122,21 +118,16 @@ class ContactKinds:
             hole_pin = (_length_about(drive, drive.shaft_pin_span), drive.hole_pin)
         sleeved = wheel.seat.kind == "sleeve", shaft is not None and shaft.seat.kind == "sleeve"
 
-        def ending(kind: ContactKind, whole: float, *bodies: tuple[float, Material] | None) -> ContactKind:
+        def ending(kind: ContactKind, modulus: float, *bodies: tuple[float, Material] | None) -> ContactKind:
             given = [(own, part.plane_strain_compliance, part.poisson_ratio) for own, part in filter(None, bodies)]
-            return replace(kind, free_ends=free_ends_of(kind.length, whole, given))
+            return replace(kind, free_ends=free_ends_of(kind.length, 1.0 / modulus, given))
 
-        return replace(
-            self,
-            pins=ending(self.pins, 1.0 / self.pins.contact_modulus, disc, None if sleeved[0] else flank_pin),
-            inner=ending(self.inner, 1.0 / self.inner.contact_modulus, (wide, parts.inner_race), (long, parts.roller)),
-            outer=ending(self.outer, 1.0 / self.outer.contact_modulus, disc, (long, parts.roller)),
-            holes=ending(
-                self.holes,
-                1.0 / hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins),
-                disc,
-                None if rigid_shaft_pins or sleeved[1] else hole_pin,
-            ),
+        in_holes = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins)
+        return ContactKinds(
+            pins=ending(self.pins, self.pins.contact_modulus, disc, None if sleeved[0] else flank_pin),
+            inner=ending(self.inner, self.inner.contact_modulus, (wide, parts.inner_race), (long, parts.roller)),
+            outer=ending(self.outer, self.outer.contact_modulus, disc, (long, parts.roller)),
+            holes=ending(self.holes, in_holes, disc, None if rigid_shaft_pins or sleeved[1] else hole_pin),
         )
 
 
@@ -149,16 +140,9 @@ def _length_about(drive: Drive, span: float) -> float:
 class Separation:
     """Separation of two surfaces about the point where they touch.
 
-    Attributes
-    ----------
-    effective_radius : float
-        ρ there, from which the width of the contact is expected, mm.
-    departure : callable
-        Separation in mm at one of the fixed places, by its number, over the distance along the tangent in mm.
-    place : int
-        Place below, 0 where there is but one.
-    part : float
-        Fraction of the way from it to the next place, 0 to 1; the separation is interpolated between both.
+    `departure` gives it at one of some fixed places, by its number, over the distance along the tangent, mm; the contact stands
+    the fraction `part` of the way from `place` to the next one, and its separation is interpolated between both. From the
+    effective radius ρ there, mm, the width of the contact is expected.
     """
 
     effective_radius: float

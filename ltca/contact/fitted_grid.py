@@ -16,11 +16,13 @@ import numpy as np
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.contact_kind import ContactKind, Departure, Separation
 from ltca.contact.pressure_cells import (
+    GAUSS_WEIGHTS,
     GRID_ROOM,
     PatchGrid,
     PatchPressure,
     ReliefFunction,
     expected_half_width,
+    gauss_points,
     graded_edges,
     solve_patch,
 )
@@ -40,14 +42,12 @@ FREE_GRADING = 1.25
 """The same of contacts that end within a profile, where pressure falls to zero by itself."""
 FIT = 0.08
 """Largest error of ln(half-width) of the rung on which `solve_fitted` accepts a contact."""
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class GridRung(NamedTuple):
-    """Shape of a grid.
+    """Shape of a grid in steps of `RUNG`: ln(half-width/length), and ln(body length/patch length).
 
-    `rung` is ln(half-width/length) in steps of `RUNG`; `reach_rung` is ln(body length/patch length) in such steps, for a
-    profiled contact that ends before the body does.
+    The second is that of a profiled contact that ends before the body does.
     """
 
     rung: int
@@ -69,11 +69,6 @@ def unit_grid(rung: GridRung, cells: int, symmetric: bool) -> PatchGrid:
         y_edges=graded_edges(1.0, cells, grading),
         symmetric_x=symmetric,
     )
-
-
-def rung_grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
-    """Return the grid of unit length on a rung for contacts of a kind."""
-    return unit_grid(rung, kind.cells, kind.symmetric)
 
 
 def smooth_step(part: float) -> float:
@@ -105,7 +100,7 @@ def expected_cells(kind: ContactKind, rung: GridRung, effective_radius: float, a
     if kind.generator is None:
         width = round(SHADES * find_width_place(kind.length, rung.reach_rung, effective_radius, approach))
         return _cylinder_cells(width, rung, kind.cells, kind.symmetric)
-    grid = rung_grid(kind, rung)
+    grid = unit_grid(rung, kind.cells, kind.symmetric)
     return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1]).reshape(grid.shape)
 
 
@@ -129,14 +124,14 @@ def unit_separations(
 
     The patch has a length and a middle along the width, mm; `relief` is that along the width.
     """
-    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
+    points = gauss_points(grid.x_edges)
     units = np.empty((*grid.shape, separation.weights.size))
     for number in range(units.shape[2]):
-        along_x = separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
+        along_x = separation.departure(separation.place + number, points * length) @ GAUSS_WEIGHTS / (2.0 * length)
         units[..., number] = along_x[:, None]
     if relief is not None:
-        heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-        units += (relief(middle + length * heights) @ _WEIGHTS / (2.0 * length))[None, :, None]
+        heights = middle + length * gauss_points(grid.y_edges)
+        units += (relief(heights) @ GAUSS_WEIGHTS / (2.0 * length))[None, :, None]
     return units.reshape(-1, units.shape[2])
 
 
@@ -146,10 +141,9 @@ def aligned_relief(kind: ContactKind) -> ReliefFunction | None:
 
 
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchPressure:
-    """Return the pressure over a contact on the grid that fits its half-width.
+    """Return the pressure over a contact on the grid that fits its half-width; approach δ and effective radius ρ are in mm.
 
-    Approach δ and effective radius ρ are in mm; `departure` gives the separation in mm over the distance along the tangent in
-    mm.
+    `departure` gives the separation over the distance along the tangent, both in mm.
     """
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
@@ -157,7 +151,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
     start = expected_cells(kind, rung, effective_radius, approach)
     for trial in range(2):
-        grid = rung_grid(kind, rung)
+        grid = unit_grid(rung, kind.cells, kind.symmetric)
         unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)
         solved = solve_patch(grid, unit, 1.0, approach / length, start=start)
         place = float(np.log(max(solved.half_width, 1e-300))) / RUNG

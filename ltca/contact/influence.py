@@ -114,10 +114,10 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
     gap = np.maximum(np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - width)
     longest = np.maximum(lengths[:, None], lengths[None, :])
     far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
-    m, i, j = np.nonzero(far)
-    for first in range(0, m.size, _PAIRS_AT_ONCE):
-        few = m[first : first + _PAIRS_AT_ONCE], i[first : first + _PAIRS_AT_ONCE], j[first : first + _PAIRS_AT_ONCE]
-        block[few] = _far_mean(lags[few[0]], width, distance[few], lengths[few[1]], lengths[few[2]])
+    pairs = np.nonzero(far)
+    for first in range(0, pairs[0].size, _PAIRS_AT_ONCE):
+        m, i, j = (each[first : first + _PAIRS_AT_ONCE] for each in pairs)
+        block[m, i, j] = _far_mean(lags[m], width, distance[m, i, j], lengths[i], lengths[j])
     return np.asarray(block)
 
 
@@ -189,12 +189,9 @@ def assemble_influence_matrix(
         end_plane=end_plane,
         end_factor=end_factor,
     )
-    ny = y_edges.size - 1
     index = np.arange(count)
-    matrix = np.empty((count, ny, count, ny))
-    for row in range(count):
-        block = lags[np.abs(row - index)]
-        if symmetric_x:
-            block = block + lags[row + index + 1]
-        matrix[row] = block.transpose(1, 0, 2)
-    return matrix.reshape(count * ny, count * ny)
+    blocks = lags[np.abs(index[:, None] - index)]
+    if symmetric_x:
+        blocks += lags[index[:, None] + index + 1]
+    size = count * (y_edges.size - 1)
+    return blocks.transpose(0, 2, 1, 3).reshape(size, size)

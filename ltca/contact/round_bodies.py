@@ -32,24 +32,10 @@ def compressed_cylinder(radius: float, half_width: float) -> float:
 def held_ring_approach(inner: float, outer: float, half_width: float, kolosov: float, angle: FloatArray) -> FloatArray:
     r"""Return approaches at angles from a loaded patch, as multiple of 2(1 − ν²)/(πEt).
 
-    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the
-    normal at its middle, and the mean of the displacement with the same weights.
-
-    Parameters
-    ----------
-    inner, outer : float
-        Radii of the held and of the loaded circle, mm.
-    half_width : float
-        Of the patches, along the wall, mm.
-    kolosov : float
-        Kolosov's constant: 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
-    angle : array, shape (m,)
-        Between load and place, rad.
-
-    Returns
-    -------
-    array, shape (m,)
-        Positive into the body.
+    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the normal at
+    its middle, and the mean of the displacement with the same weights. The radii of the held and of the loaded circle and the
+    half-width of the patches along the wall are in mm, angles between load and place in rad, shape (m,), as the approaches,
+    which are positive into the body. Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
     """
     width, ratio = max(half_width / outer, NARROW), inner / outer
     count = max(int(RESOLUTION / width), 64)

@@ -11,7 +11,7 @@ long: every term is a corner function that stays of order one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -99,19 +99,8 @@ def max_shear_stress(stress: FloatArray) -> FloatArray:
     return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SubsurfaceShear:
-    """Largest shear stress below mid-width.
-
-    Attributes
-    ----------
-    max_shear : float
-        MPa.
-    depth : float
-        mm.
-    x : float
-        Place along the profile, under the peak of the pressure, mm.
-    """
+class SubsurfaceShear(NamedTuple):
+    """Largest shear stress below mid-width, MPa, its depth, mm, and its place along the profile, under the peak pressure, mm."""
 
     max_shear: float
     depth: float

@@ -73,19 +73,9 @@ class Patch(NamedTuple):
 class TiltedPiece:
     """Coefficients of a contact on one grid with its contact cells held: linear in approach, tilt and separation.
 
-    Attributes
-    ----------
-    shape : GridShape
-        Of the grid.
-    place : int
-        Place of the separation, see `ltca.contact.contact_kind.Separation`.
-    patch : Patch
-        Where it lies; its depth does not matter.
-    active : array of bool, shape (cells,)
-        Contact cells.
-    rate, opening_rate : array, shape (cells, 2 + places)
-        Pressure by E*, and opening, per approach in the middle of the patch by its length, per tilt, and per separation at each
-        place, by which it is less.
+    It belongs to the grid of a shape, a place of the separation (`ltca.contact.contact_kind.Separation`) and a patch, whose depth
+    does not matter. `rate` and `opening_rate`, shape (cells, 2 + places), are the pressure by E*, and the opening, per approach in
+    the middle of the patch by its length, per tilt, and per separation at each place, by which it is less.
     """
 
     shape: GridShape
@@ -109,9 +99,6 @@ class TiltedPiece:
         return bool(np.min(self.opening_rate[:, : closing.size] @ closing) >= -slack)
 
 
-TiltedPieces = tuple[TiltedPiece, ...]
-
-
 class TiltedPress(NamedTuple):
     """A pressed contact: load and moment with their derivatives, N, mm and rad, its energy, N·mm, and what is behind it.
 
@@ -126,7 +113,7 @@ class TiltedPress(NamedTuple):
     energy: float
     edges: FloatArray
     line_load: FloatArray
-    pieces: TiltedPieces
+    pieces: tuple[TiltedPiece, ...]
 
 
 @lru_cache(maxsize=KEPT)

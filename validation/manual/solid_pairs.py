@@ -22,7 +22,7 @@ from fem.solid_contact.solved_pair import (
 )
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation
-from ltca.contact.free_end import free_end_factor
+from ltca.contact.free_end import guilbault_factor
 from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.pressure_cells import PatchSolution, solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
@@ -193,7 +193,7 @@ INSIDE = (0.5, 1.0, 2.0, 4.0, 8.0)
 @cache
 def press_images(cells: int) -> PatchSolution:
     """Press the line on half-spaces with its images in both ends, so many cells over the half-width, at the same load."""
-    factor = free_end_factor(STEEL.poisson_ratio)
+    factor = guilbault_factor(STEEL.poisson_ratio)
 
     def images(approach: float) -> PatchSolution:
         return solve_cylinder_patch(LINE_LENGTH, LINE_RADIUS, MODULUS, approach, cells=cells, end_factor=factor)

@@ -31,8 +31,8 @@ from ltca.contact.fitted_grid import (
     find_patch_length,
     find_reach_place,
     find_width_place,
-    rung_grid,
     smooth_step,
+    unit_grid,
     unit_separations,
 )
 from ltca.contact.pressure_cells import PatchPressure
@@ -149,7 +149,7 @@ def press(kind: ContactKind, separation: Separation, approach: float, start: Seq
     for rung, share in shares.items():
         piece = _settle(kind, rung, separation, approach, start)
         length = find_patch_length(kind.length, rung.reach_rung)
-        scale = kind.contact_modulus * length * rung_grid(kind, rung).images / np.pi
+        scale = kind.contact_modulus * length * unit_grid(rung, kind.cells, kind.symmetric).images / np.pi
         taken = float(piece.load_taken[: separation.weights.size] @ separation.weights)
         own = scale * length * (approach / length * piece.load_rate - taken)
         load += share * own
@@ -168,7 +168,7 @@ def recover_patches(
         piece = _settle(kind, rung, separation, approach, start)
         closing = approach / find_patch_length(kind.length, rung.reach_rung)
         pressure = np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0)
-        grid = rung_grid(kind, rung)
+        grid = unit_grid(rung, kind.cells, kind.symmetric)
         scaled = grid.scaled(find_patch_length(kind.length, rung.reach_rung))
         patch = PatchPressure(grid=scaled, pressure=kind.contact_modulus * pressure.reshape(grid.shape))
         patches.append((share, patch))
@@ -181,7 +181,7 @@ def _settle(
     """Return the piece of one grid that holds at an approach: one of `start` if it does, otherwise solved from it."""
     length = find_patch_length(kind.length, rung.reach_rung)
     weights, closing = separation.weights, approach / length
-    grid = rung_grid(kind, rung)
+    grid = unit_grid(rung, kind.cells, kind.symmetric)
     areas = np.pi * grid.areas.ravel()
     active = None
     for piece in start:
