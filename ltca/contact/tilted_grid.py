@@ -73,9 +73,9 @@ class Patch(NamedTuple):
 class TiltedPiece:
     """Coefficients of a contact on one grid with its contact cells held: linear in approach, tilt and separation.
 
-    It belongs to the grid of a shape, a place of the separation (`ltca.contact.contact_kind.Separation`) and a patch, whose depth
-    does not matter. `rate` and `opening_rate`, shape (cells, 2 + places), are the pressure by E*, and the opening, per approach in
-    the middle of the patch by its length, per tilt, and per separation at each place, by which it is less.
+    It belongs to the grid of a shape, a place of the separation (`ltca.contact.contact_kind.Separation`) and a patch, whose
+    depth does not matter. `rate` and `opening_rate`, shape (cells, 2 + places), are the pressure by E*, and the opening, per
+    approach in the middle of the patch by its length, per tilt, and per separation at each place, by which it is less.
     """
 
     shape: GridShape
