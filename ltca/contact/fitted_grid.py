@@ -8,6 +8,7 @@ grids.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
@@ -17,13 +18,12 @@ from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.contact_kind import ContactKind, Departure, Separation
 from ltca.contact.pressure_cells import (
     GAUSS_WEIGHTS,
-    GRID_ROOM,
     PatchGrid,
     PatchPressure,
     ReliefFunction,
     expected_half_width,
     gauss_points,
-    graded_edges,
+    mirrored,
     solve_patch,
 )
 from ltca.geometry.length_profile import Relief
@@ -56,19 +56,12 @@ class GridRung(NamedTuple):
 
 @cache
 def unit_grid(rung: GridRung, cells: int, symmetric: bool) -> PatchGrid:
-    """Return the grid of unit length on a rung; its influence matrix is kept with it.
-
-    `cells` are those over the half-width and over half the length; `symmetric` grids have the positive half in x only.
-    """
+    """Return the grid of unit length on a rung for contacts of a kind; its influence matrix is kept with it."""
     half_width = float(np.exp(rung.rung * RUNG))
     share = float(np.exp(-8.0 * rung.reach_rung * RUNG))
     grading = FREE_GRADING + share * (END_GRADING - FREE_GRADING)
-    x = half_width / cells * np.arange(int(np.ceil(GRID_ROOM * cells)) + 1.0)
-    return PatchGrid(
-        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
-        y_edges=graded_edges(1.0, cells, grading),
-        symmetric_x=symmetric,
-    )
+    grid = PatchGrid.fitted(1.0, half_width, cells=cells, grading=grading)
+    return grid if symmetric else replace(grid, x_edges=mirrored(grid.x_edges), symmetric_x=False)
 
 
 def smooth_step(part: float) -> float:

@@ -50,6 +50,11 @@ def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
     return np.asarray(0.5 * length * (1.0 - (1.0 - step) ** grading))
 
 
+def mirrored(edges: FloatArray) -> FloatArray:
+    """Return the edges of a whole patch from those of its positive half, which begin at 0."""
+    return np.concatenate([-edges[:0:-1], edges])
+
+
 def end_grading(slenderness: float) -> float:
     """Return the grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
     return 2.5 + 0.25 * float(np.log(max(slenderness, 1.0)))
@@ -157,9 +162,9 @@ class PatchPressure:
         """Return the edges of the cells along x and y and the pressure over the whole patch, images included; mm, mm, MPa."""
         x, y, pressure = self.grid.x_edges, self.grid.y_edges, self.pressure
         if self.grid.symmetric_x:
-            x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
+            x, pressure = mirrored(x), np.concatenate([pressure[::-1], pressure])
         if self.grid.symmetric_y:
-            y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+            y, pressure = mirrored(y), np.concatenate([pressure[:, ::-1], pressure], axis=1)
         return x, y, pressure
 
     @property
