@@ -176,4 +176,4 @@ def _on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray
 
     θ counts from a root, which may be turned.
     """
-    return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
+    return np.asarray(direction - np.angle(profile.turn))

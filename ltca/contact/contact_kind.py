@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -42,8 +43,8 @@ class ContactKind:
 
     length: float
     contact_modulus: float
-    generator: Relief | None
-    symmetric: bool
+    generator: Relief | None = None
+    symmetric: bool = True
     cells: int = CELLS
     lead: Disc | None = None
     free_ends: tuple[FreeEnds, ...] = ()
@@ -79,27 +80,15 @@ class ContactKinds:
         bearing, wheel, parts, wide = drive.crank_bearing, drive.pin_wheel, drive.materials, drive.disc.thickness
         roller = generator_profile(bearing.roller_profile, drive.roller_length, bearing.roller_radius)
 
-        def kind(
-            length: float,
-            bodies: tuple[Material, Material],
-            generator: Relief | None = None,
-            *,
-            flank: bool = False,
-        ) -> ContactKind:
-            return ContactKind(
-                length=length,
-                contact_modulus=contact_modulus(*bodies),
-                generator=generator,
-                symmetric=not flank,
-                cells=cells,
-                lead=drive.disc if flank and has_lead(drive.disc) else None,
-            )
+        def kind(length: float, bodies: tuple[Material, Material], **own: Any) -> ContactKind:
+            return ContactKind(length=length, contact_modulus=contact_modulus(*bodies), cells=cells, **own)
 
         pin = generator_profile(wheel.pin_profile, wide, wheel.pin_radius)
+        lead = drive.disc if has_lead(drive.disc) else None
         return cls(
-            pins=kind(wide, (parts.disc, drive.flank_pin), pin, flank=True),
-            inner=kind(drive.roller_length, (parts.inner_race, parts.roller), roller),
-            outer=kind(drive.roller_length, (parts.disc, parts.roller), roller),
+            pins=kind(wide, (parts.disc, drive.flank_pin), generator=pin, symmetric=False, lead=lead),
+            inner=kind(drive.roller_length, (parts.inner_race, parts.roller), generator=roller),
+            outer=kind(drive.roller_length, (parts.disc, parts.roller), generator=roller),
             holes=kind(wide, (parts.disc, drive.hole_pin)),
         )
 

@@ -14,7 +14,16 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
+from ltca.geometry.coordinates import (
+    DISC_PLACE,
+    DISC_ROTATION,
+    RIGID,
+    WHEEL_ANGLE,
+    Coordinates,
+    X,
+    Y,
+    disc_displacement,
+)
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import ACROSS, lead_relief, profile_across
 from ltca.geometry.pair_motion import (
@@ -170,9 +179,7 @@ class ContactGeometry:
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose, rad: (φ_C + 2πi)/z_P for Δz = 1 on a flank that is not turned."""
-        pins = np.angle(self.placement.wheel_pin_centres)
-        if self.profile.is_turned:
-            pins = pins - np.angle(self.profile.turn)
+        pins = np.angle(self.placement.wheel_pin_centres) - np.angle(self.profile.turn)
         return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
 
     def flank(
@@ -254,7 +261,7 @@ class ContactGeometry:
     def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
         """Return where the disc stands (Eq. 46); arguments as for `flank`."""
         races = self.placement.races(crank_angle)
-        centre = (races.middle + pose[:, X] + 1j * pose[:, Y])[:, None]
+        centre = (races.middle + disc_displacement(pose))[:, None]
         return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
 
     def holes(
@@ -357,7 +364,7 @@ class ContactGeometry:
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc = at or self.disc_place(crank_angle, pose)
         races, arm = disc.races, place.bore_centres * disc.turn
-        moved = races.middle[:, None] - races.centre + arm + (pose[:, X] + 1j * pose[:, Y])[:, None]
+        moved = races.middle[:, None] - races.centre + arm + disc_displacement(pose)[:, None]
         gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)
         gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = 1.0, 1j, 1j * arm
         for crank in range(coordinates.cranks):
