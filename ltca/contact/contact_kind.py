@@ -49,15 +49,15 @@ class ContactKind:
     lead: Disc | None = None
     free_ends: tuple[FreeEnds, ...] = ()
 
+    def aligned_relief(self, z: ArrayLike) -> FloatArray:
+        """Return by how much the profile alone falls short at heights above mid-width, mm."""
+        height = np.asarray(z, dtype=float)
+        return np.zeros(height.shape) if self.generator is None else self.generator.relief(height)
+
     def relief(self, z: ArrayLike) -> FloatArray:
         """Return by how much profile and lead fall short at heights above mid-width, mm."""
-        height = np.asarray(z, dtype=float)
-        total = np.zeros(height.shape)
-        if self.generator is not None:
-            total = total + self.generator.relief(height)
-        if self.lead is not None:
-            total = total + lead_relief(self.lead, height)
-        return total
+        relief = self.aligned_relief(z)
+        return relief if self.lead is None else relief + lead_relief(self.lead, np.asarray(z, dtype=float))
 
     @property
     def end_cell(self) -> float:

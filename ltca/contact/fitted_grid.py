@@ -111,7 +111,7 @@ def _cylinder_cells(width: int, rung: GridRung, cells: int, symmetric: bool) -> 
 
 
 def unit_separations(
-    grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction | None, middle: float = 0.0
+    grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction, middle: float = 0.0
 ) -> FloatArray:
     """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places).
 
@@ -122,15 +122,9 @@ def unit_separations(
     for number in range(units.shape[2]):
         along_x = separation.departure(separation.place + number, points * length) @ GAUSS_WEIGHTS / (2.0 * length)
         units[..., number] = along_x[:, None]
-    if relief is not None:
-        heights = middle + length * gauss_points(grid.y_edges)
-        units += (relief(heights) @ GAUSS_WEIGHTS / (2.0 * length))[None, :, None]
+    heights = middle + length * gauss_points(grid.y_edges)
+    units += (relief(heights) @ GAUSS_WEIGHTS / (2.0 * length))[None, :, None]
     return units.reshape(-1, units.shape[2])
-
-
-def aligned_relief(kind: ContactKind) -> ReliefFunction | None:
-    """Return the relief of contacts that do not tilt: that of their generator."""
-    return None if kind.generator is None else kind.generator.relief
 
 
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchPressure:
@@ -145,7 +139,7 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     start = expected_cells(kind, rung, effective_radius, approach)
     for trial in range(2):
         grid = unit_grid(rung, kind.cells, kind.symmetric)
-        unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)
+        unit = unit_separations(grid, separation, length, kind.aligned_relief).reshape(grid.shape)
         solved = solve_patch(grid, unit, 1.0, approach / length, start=start)
         place = float(np.log(max(solved.half_width, 1e-300))) / RUNG
         if trial or solved.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -30,14 +29,9 @@ def _filled(values: Sequence[float], count: int) -> FloatArray:
 
 
 def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
-    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * _rays(count))
-
-
-@lru_cache(maxsize=64)
-def _rays(count: int) -> ComplexArray:
-    rays: ComplexArray = np.exp(2j * np.pi * np.arange(count) / count)
-    rays.setflags(write=False)
-    return rays
+    """Places of the parts of a circle, mm."""
+    rays = np.exp(2j * np.pi * np.arange(count) / count)
+    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * rays)
 
 
 def _of_shaft(drive: Drive) -> dict[str, Any]:

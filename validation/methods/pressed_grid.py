@@ -26,7 +26,6 @@ from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.fitted_grid import (
     BLEND,
     GridRung,
-    aligned_relief,
     expected_cells,
     find_patch_length,
     find_reach_place,
@@ -195,7 +194,7 @@ def _settle(
         # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
         near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
         active = near[0].active if near else expected_cells(kind, rung, separation.effective_radius, approach).ravel()
-    units = unit_separations(grid, separation, length, aligned_relief(kind))
+    units = unit_separations(grid, separation, length, kind.aligned_relief)
     influence = grid.influence
     found = solve_unilateral_contact(
         influence,
