@@ -127,21 +127,20 @@ def lagged_influence(
     y_edges: FloatArray,
     *,
     mirrored: bool,
-    end_plane: float = 0.0,
     end_factor: float = 0.0,
 ) -> FloatArray:
     """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
 
     Axis 0 is the lag in x, 0, 1, … cells of `cell_width` (mm); `y_edges` are the n + 1 ascending edges along y, mm.
     `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start; `end_factor` times the images in
-    the planes y = ±`end_plane` (mm) are added for free ends (`ltca.contact.free_end`).
+    the planes of their ends, y = ±`y_edges[-1]`, are added for free ends (`ltca.contact.free_end`).
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
     for sign in (1.0, -1.0) if mirrored else (1.0,):
         total += _lagged_block(lags, cell_width, y_edges, sign)
         if end_factor:
-            for shift in (2.0 * end_plane, -2.0 * end_plane):
+            for shift in (2.0 * y_edges[-1], -2.0 * y_edges[-1]):
                 total += end_factor * _lagged_block(lags, cell_width, y_edges, -sign, shift)
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
 
@@ -164,7 +163,6 @@ def assemble_influence_matrix(
     *,
     symmetric_x: bool = False,
     symmetric_y: bool = False,
-    end_plane: float = 0.0,
     end_factor: float = 0.0,
 ) -> FloatArray:
     """Return the area-weighted influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
@@ -172,7 +170,7 @@ def assemble_influence_matrix(
     It is symmetric and positive definite; divided by π E* it gives displacement moments. Edges are ascending, mm: uniform along
     the profile (x), of any spacing along the width (y). A symmetric direction is given by its positive half, edges from 0: the
     images of the cells are added, so that the matrix acts on that half alone and ``p·A·p / (2 π E*)`` is the energy of one half
-    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`end_plane` (mm) add their images times `end_factor`
+    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`y_edges[-1]` add their images times `end_factor`
     (`ltca.contact.free_end`).
     """
     widths = np.diff(x_edges)
@@ -186,7 +184,6 @@ def assemble_influence_matrix(
         2 * count if symmetric_x else count,
         y_edges,
         mirrored=symmetric_y,
-        end_plane=end_plane,
         end_factor=end_factor,
     )
     index = np.arange(count)

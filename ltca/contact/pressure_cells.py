@@ -64,7 +64,7 @@ def end_grading(slenderness: float) -> float:
 class PatchGrid:
     """Tensor grid over a patch, whole or the positive half in either direction, by its edges along profile (x) and width (y), mm.
 
-    Edges along x are uniform; those of a symmetric direction begin at 0. Bodies with free ends at y = ±`end_plane`, mm, have
+    Edges along x are uniform; those of a symmetric direction begin at 0. Bodies whose free ends are those of the patch have
     images in them of the weight `end_factor` (`ltca.contact.free_end`).
     """
 
@@ -72,7 +72,6 @@ class PatchGrid:
     y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
-    end_plane: float = 0.0
     end_factor: float = 0.0
 
     @classmethod
@@ -84,13 +83,12 @@ class PatchGrid:
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
             y_edges=graded_edges(length, cells, grading),
-            end_plane=0.5 * length,
             end_factor=end_factor,
         )
 
     def scaled(self, size: float) -> PatchGrid:
         """Return the same grid so many times as large."""
-        return replace(self, x_edges=self.x_edges * size, y_edges=self.y_edges * size, end_plane=self.end_plane * size)
+        return replace(self, x_edges=self.x_edges * size, y_edges=self.y_edges * size)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -125,7 +123,6 @@ class PatchGrid:
             self.y_edges,
             symmetric_x=self.symmetric_x,
             symmetric_y=self.symmetric_y,
-            end_plane=self.end_plane,
             end_factor=self.end_factor,
         )
 

@@ -100,11 +100,10 @@ def max_shear_stress(stress: FloatArray) -> FloatArray:
 
 
 class SubsurfaceShear(NamedTuple):
-    """Largest shear stress below mid-width, MPa, its depth, mm, and its place along the profile, under the peak pressure, mm."""
+    """Largest shear stress below mid-width, MPa, under the peak of the pressure, and its depth, mm."""
 
     max_shear: float
     depth: float
-    x: float
 
 
 def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> SubsurfaceShear:
@@ -123,9 +122,7 @@ def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> Subs
     top = int(np.clip(np.argmax(shear), 1, _DEPTHS - 2))
     bend, slope, crest = np.polyfit(np.log(depths[top - 1 : top + 2] / depths[top]), shear[top - 1 : top + 2], 2)
     offset = float(np.clip(-0.5 * slope / bend, -0.1, 0.1))
-    return SubsurfaceShear(
-        max_shear=float(crest + 0.5 * slope * offset), depth=float(depths[top] * np.exp(offset)), x=place
-    )
+    return SubsurfaceShear(float(crest + 0.5 * slope * offset), float(depths[top] * np.exp(offset)))
 
 
 LINE_SHEAR = 0.3002831

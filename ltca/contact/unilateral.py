@@ -24,15 +24,13 @@ _BLOCK_TRIALS = 4
 class UnilateralSolution(NamedTuple):
     """Solution of a unilateral contact problem.
 
-    Pressures are non-negative, zero outside the `active` cells, which are in contact; `opening` is A p − penetration, zero in
-    the contact, non-negative outside. `rate` solves A q = load_direction on the contact, zero outside: the exact tangent of the
-    pressure when the penetration grows by that, all zeros when no direction was given. `history` has the number of offending
-    cells before each solve.
+    Pressures are non-negative, zero outside the `active` cells, which are in contact. `rate` solves A q = load_direction on the
+    contact, zero outside: the exact tangent of the pressure when the penetration grows by that, all zeros when no direction was
+    given. `history` has the number of offending cells before each solve.
     """
 
     pressure: FloatArray
     active: BoolArray
-    opening: FloatArray
     rate: FloatArray
     history: tuple[int, ...]
 
@@ -83,7 +81,7 @@ def solve_unilateral_contact(
         if offenders == 0:
             if load_direction is not None and factor is not None:
                 rate[inside] = lapack.dpotrs(factor, load_direction[inside], lower=1)[0]
-            return UnilateralSolution(pressure, active, opening, rate, tuple(history))
+            return UnilateralSolution(pressure, active, rate, tuple(history))
         if offenders < fewest:
             fewest, trials = offenders, _BLOCK_TRIALS
         else:
