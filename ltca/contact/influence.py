@@ -122,12 +122,7 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
 
 
 def lagged_influence(
-    cell_width: float,
-    lag_count: int,
-    y_edges: FloatArray,
-    *,
-    mirrored: bool,
-    end_factor: float = 0.0,
+    cell_width: float, lag_count: int, y_edges: FloatArray, *, mirrored: bool, end_factor: float = 0.0
 ) -> FloatArray:
     """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
 
@@ -180,11 +175,7 @@ def assemble_influence_matrix(
     if (symmetric_x and abs(x_edges[0]) > 1e-9 * width) or (symmetric_y and abs(y_edges[0]) > 1e-9 * y_edges[-1]):
         raise ValueError("the edges of a symmetric direction must start at 0")
     lags = lagged_influence(
-        width,
-        2 * count if symmetric_x else count,
-        y_edges,
-        mirrored=symmetric_y,
-        end_factor=end_factor,
+        width, 2 * count if symmetric_x else count, y_edges, mirrored=symmetric_y, end_factor=end_factor
     )
     index = np.arange(count)
     blocks = lags[np.abs(index[:, None] - index)]

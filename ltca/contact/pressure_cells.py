@@ -224,12 +224,7 @@ class PatchSolution(PatchPressure):
 
 
 def solve_patch(
-    grid: PatchGrid,
-    separation: FloatArray,
-    contact_modulus: float,
-    approach: float,
-    *,
-    start: BoolArray | None = None,
+    grid: PatchGrid, separation: FloatArray, contact_modulus: float, approach: float, *, start: BoolArray | None = None
 ) -> PatchSolution:
     """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
 
@@ -239,9 +234,7 @@ def solve_patch(
     """
     penetration = (approach - separation.ravel()) * grid.areas.ravel()
     solution = solve_unilateral_contact(
-        grid.influence,
-        penetration / (1.0 / (np.pi * contact_modulus)),
-        start=None if start is None else start.ravel(),
+        grid.influence, penetration / (1.0 / (np.pi * contact_modulus)), start=None if start is None else start.ravel()
     )
     pressure = solution.pressure
     energy = 0.5 * grid.images * float(pressure @ penetration)

@@ -40,12 +40,7 @@ def rectangle_stress(
     )
     total = np.zeros((*x.shape, 6))
     slack = 1.0 - 2.0 * poisson_ratio
-    for sign, across, along in (
-        (1.0, x + a, y + b),
-        (-1.0, x + a, y - b),
-        (-1.0, x - a, y + b),
-        (1.0, x - a, y - b),
-    ):
+    for sign, across, along in ((1.0, x + a, y + b), (-1.0, x + a, y - b), (-1.0, x - a, y + b), (1.0, x - a, y - b)):
         r = np.sqrt(across**2 + along**2 + z**2)
         square_x, square_y = across**2 + z**2, along**2 + z**2
         product = across * along

@@ -90,6 +90,5 @@ def solve_unilateral_contact(
             offending[: np.nonzero(offending)[0][-1]] = False
         active = active ^ offending
     raise ConvergenceError(
-        f"unilateral contact of {count} cells: the contact set did not settle (offending cells listed)",
-        history,
+        f"unilateral contact of {count} cells: the contact set did not settle (offending cells listed)", history
     )

@@ -195,9 +195,7 @@ class FlankProfile:
             return parts * t
 
         return CurvePoints(
-            c + 1j * d * t + self.centre,
-            framed(along, slope),
-            framed(ds + 2.0 * slope * w - d * dw, bend - w * along),
+            c + 1j * d * t + self.centre, framed(along, slope), framed(ds + 2.0 * slope * w - d * dw, bend - w * along)
         )
 
     def normal(self, parameter: FloatArray) -> ComplexArray:

@@ -26,16 +26,7 @@ from ltca.geometry.coordinates import (
 )
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import ACROSS, lead_relief, profile_across
-from ltca.geometry.pair_motion import (
-    BoreMotion,
-    FlankMotion,
-    KnownPins,
-    PairMotion,
-    PairTilt,
-    RollerRays,
-    cross,
-    dot,
-)
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays, cross, dot
 from ltca.geometry.placement import Placement, Races
 from ltca.geometry.rotation import unit
 
@@ -265,11 +256,7 @@ class ContactGeometry:
         return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
 
     def holes(
-        self,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        shifts: ComplexArray | None = None,
-        at: DiscPlace | None = None,
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None, at: DiscPlace | None = None
     ) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 51, 59, 78–83, 88); arguments as for `flank`."""
         place = self.placement
