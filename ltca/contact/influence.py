@@ -182,4 +182,4 @@ def assemble_influence_matrix(
     if symmetric_x:
         blocks += lags[index[:, None] + index + 1]
     size = count * (y_edges.size - 1)
-    return blocks.transpose(0, 2, 1, 3).reshape(size, size)
+    return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size, size))

@@ -193,7 +193,8 @@ def press_tilted(
                 if column:
                     values[4] += slope * numbers[1]
     *_, pressed = max(found, key=lambda each: each[0])
-    return TiltedPress(*map(float, values), pressed, tuple(piece for _, piece, *_ in found))
+    load, moment, stiffness, mixed, turning, energy = (float(value) for value in values)
+    return TiltedPress(load, moment, stiffness, mixed, turning, energy, pressed, tuple(piece for _, piece, *_ in found))
 
 
 def _find_shares(patch: Patch | None, effective_radius: float) -> dict[GridShape, float]:

@@ -292,9 +292,8 @@ class FlankProfile:
                     return NearestPoint(every, self.contact_curve(settled))
                 flank = take_rows(flank, np.nonzero(going)[0])
                 # What is left goes on as one column.
-                theta, direction, point, last, slope_before = (
-                    each[going][:, None] for each in (theta, direction, point, last, slope_before)
-                )
+                theta, last, slope_before = (each[going][:, None] for each in (theta, last, slope_before))
+                direction, point = direction[going][:, None], point[going][:, None]
                 if iteration >= BRACKETED:
                     low, high = low[going][:, None], high[going][:, None]
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
@@ -335,10 +334,10 @@ class FlankProfile:
         other = flank._settle(point, start)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
 
-        parameter, *curve = (each.copy() for each in (theta, *found.curve))
-        for here, there in zip((parameter, *curve), (other.parameter, *other.curve), strict=True):
+        mixed = NearestPoint(theta.copy(), CurvePoints(*(each.copy() for each in found.curve)))
+        for here, there in zip((mixed.parameter, *mixed.curve), (other.parameter, *other.curve), strict=True):
             here[rows] = np.where(nearer, there, here[rows])
-        return NearestPoint(parameter, CurvePoints(*curve))
+        return mixed
 
     def _off_path(self, point: ComplexArray, found: NearestPoint) -> FloatArray:
         """Distance of points from the path of the centre of a pin that touches the flank, mm."""
