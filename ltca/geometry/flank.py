@@ -146,8 +146,10 @@ class FlankProfile:
     def at(self, direction: ComplexArray) -> CurvePoints:
         """Return the design trochoid as `locus` does, at e^{iθ}."""
         u = self.reduction_ratio
-        circle = self.generating_radius * self.turn * direction
-        crank = self.eccentricity * self.turn * integer_power(direction, round(u))
+        circle = self.generating_radius * direction
+        crank = self.eccentricity * integer_power(direction, round(u))
+        if isinstance(self.turn, np.ndarray) or self.turn != 1.0:
+            circle, crank = circle * self.turn, crank * self.turn
         return CurvePoints(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
 
     @property
@@ -169,7 +171,7 @@ class FlankProfile:
         """Return the frame of the design trochoid at e^{iθ}, in which deviations are given."""
         c, dc, ddc = self.at(direction)
         u = self.reduction_ratio
-        circle = self.generating_radius * self.turn * direction
+        circle = self.generating_radius * direction * self.turn
         dddc = 1j * (u**3 * (circle - c) - circle)
         back = dc.conjugate()
         square = dc.real**2 + dc.imag**2

@@ -275,7 +275,8 @@ class ContactGeometry:
         moved[..., X], moved[..., Y] = -direction, 1j * direction
         moved[..., DISC_ROTATION] = 1j * (arm * direction.conjugate()).conjugate()
         if by_ring is not None:
-            moved[..., coordinates.ring_place] = by_ring.conjugate() * direction[..., None]
+            ahead = direction[..., None]
+            moved[..., coordinates.ring_place] = dot(ahead, by_ring) + 1j * cross(by_ring, ahead)
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
         return PairMotion(
             approach=approach, gradient=moved.real.copy(), along=moved.imag.copy(), bending=1.0 / distance
