@@ -18,7 +18,7 @@ sys.path[0] = str(Path(__file__).resolve().parents[1])
 
 from fem.solid_contact.pair_shapes import SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, solve_pair
-from ltca.contact.free_end import free_end_factor
+from ltca.contact.free_end import guilbault_factor
 from ltca.contact.pressure_cells import PatchSolution, solve_cylinder_patch
 from validation.manual.solid_pairs import (
     INSIDE,
@@ -63,7 +63,7 @@ def main() -> None:
     def row(name: str, values: list[float]) -> None:
         print(f"{name:<26}" + "".join(f"{value:>8.3f}" for value in np.asarray(values)), flush=True)
 
-    law = free_end_factor(STEEL.poisson_ratio)
+    law = guilbault_factor(STEEL.poisson_ratio)
     for name, factor in (
         ("half-spaces", 0.0),
         ("images, 1", 1.0),

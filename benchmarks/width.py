@@ -26,7 +26,7 @@ from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
 from ltca.errors import ConvergenceError
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
@@ -59,9 +59,7 @@ def contact_kind(drop: float, cells: int) -> ContactKind:
     """Return the kind of a contact with a crown drop, mm."""
     profile = None
     if drop > 0.0:
-        profile = SummedProfile(
-            length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop)),)
-        )
+        profile = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop))
     return ContactKind(length=LENGTH, contact_modulus=MODULUS, generator=profile, symmetric=True, cells=cells)
 
 

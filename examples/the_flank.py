@@ -21,7 +21,7 @@ geometry = ContactGeometry.of_drive(drive)
 profile, places = geometry.profile, geometry.placement
 
 parameter = np.linspace(0.0, 2.0 * np.pi, 2000)
-flank = profile.flank(parameter) + places.race_centre(np.array(0.0))
+flank = profile.flank(parameter) + places.races(np.array(0.0)).middle
 
 figure, axes = plt.subplots(figsize=(5.0, 5.0))
 axes.plot(flank.real, flank.imag, color="#4c72b0")

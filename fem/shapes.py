@@ -169,7 +169,7 @@ class FlankCurve:
         points = np.asarray(point, dtype=complex).ravel()
         table, tree = _flank_samples(self)
         _, nearest = tree.query(np.column_stack([points.real, points.imag]))
-        theta = self.profile.nearest_parameter(points, table[nearest])
+        theta = self.profile.nearest_point(points, table[nearest]).parameter
         return np.asarray(np.mod(theta, 2.0 * np.pi).reshape(np.shape(point)))
 
 
@@ -242,7 +242,7 @@ class DiscShape:
         normals = self.flank.normals(theta)
         _, tangent, _ = self.flank.profile.locus(theta)
         # Parallel curves: |r′| = |c′| (1 − offset κ_c).
-        speed = np.abs(tangent) * (1.0 - self.flank.profile.offset * self.flank.profile.locus_curvature(theta))
+        speed = np.abs(tangent) * (1.0 - self.flank.profile.offset * self.flank.profile.locus(theta).curvature)
         outer = 0.5 * float(np.mean((points * normals.conjugate()).real * speed)) * 2.0 * np.pi
         return outer - np.pi * (sum(bore.radius**2 for bore in self.bores) + sum(hole.radius**2 for hole in self.holes))
 

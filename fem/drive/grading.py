@@ -68,7 +68,9 @@ def grade_contacts(
     if deformed is not None:
         shifted = _is_shifted(flank_points, deformed.flank_points, pin_group(theta))
         theta = np.where(
-            shifted, profile.nearest_parameter(np.where(shifted, deformed.flank_points, flank_points), theta), theta
+            shifted,
+            profile.nearest_point(np.where(shifted, deformed.flank_points, flank_points), theta).parameter,
+            theta,
         )
         flank_points = profile.flank(theta)
         bore_points = np.where(_is_shifted(bore_points, deformed.bore_points, outer), deformed.bore_points, bore_points)

@@ -228,12 +228,12 @@ class PlacedContacts(ABC):
     @property
     def race_centre(self) -> complex:
         """Nominal place of the disc: centre of its inner race, mean of those of several, mm."""
-        return complex(self.placement.race_centre(np.asarray(self.crank_angle)))
+        return complex(self.placement.races(np.asarray(self.crank_angle)).middle)
 
     @property
     def race_centres(self) -> ComplexArray:
         """Centres of the inner races and cages, mm, shape (cranks,)."""
-        return self.placement.race_centres(np.asarray(self.crank_angle))
+        return self.placement.races(np.asarray(self.crank_angle)).centre
 
     def crank_of(self, roller: int) -> int:
         """Return the number of the crank that a roller runs on."""

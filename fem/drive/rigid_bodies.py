@@ -83,10 +83,10 @@ class RigidBodies:
         """
         profile, place = self.profile, self.placement
         turn, wheel = np.exp(1j * rotation), self.crank_angle / place.reduction_ratio + wheel_angle
-        centre = complex(place.race_centre(np.asarray(self.crank_angle))) + displacement
+        centre = complex(place.races(np.asarray(self.crank_angle)).middle) + displacement
         pins = (place.wheel_pin_centres * np.exp(1j * wheel) - centre) / turn
         start = np.angle(place.wheel_pin_centres) + wheel - rotation
-        theta = profile.nearest_parameter(pins, _on_turned_flank(profile, start))
+        theta = profile.nearest_point(pins, _on_turned_flank(profile, start)).parameter
         rays = self.roller_rays()
         bores = bore_displacements(place, self.crank_angle, displacement, rotation)[place.roller_cranks]
         inward, across = (bores * rays.conjugate()).real, (bores * rays.conjugate()).imag
@@ -115,11 +115,11 @@ class RigidBodies:
         in_disc = (self.wheel_pins(pose[WHEEL_ANGLE]) - centre) * np.exp(-1j * pose[DISC_ROTATION])
         count = len(self.placement.wheel_pin_radii)
         start = self.crank_angle / self.placement.reduction_ratio + 2.0 * np.pi * np.arange(count) / count
-        return self.profile.nearest_parameter(in_disc, _on_turned_flank(self.profile, start))
+        return self.profile.nearest_point(in_disc, _on_turned_flank(self.profile, start)).parameter
 
     def disc_centre(self, pose: FloatArray) -> complex:
         """Return the centre of the disc, fixed frame, mm."""
-        return complex(self.placement.race_centre(np.asarray(self.crank_angle))) + complex(pose[X], pose[Y])
+        return complex(self.placement.races(np.asarray(self.crank_angle)).middle) + complex(pose[X], pose[Y])
 
     def roller_rays(self) -> ComplexArray:
         """Return unit vectors of the cage rays."""
@@ -167,7 +167,7 @@ def bore_displacements(
 
     `displacement` (mm) and `rotation` (rad) are those of the disc from its nominal place, in fixed axes.
     """
-    races = placement.race_centres(np.asarray(crank_angle))
+    races = placement.races(np.asarray(crank_angle)).centre
     return np.asarray(races.mean() - races + displacement + placement.bore_centres * np.exp(1j * rotation))
 
 
@@ -176,4 +176,4 @@ def _on_turned_flank(profile: FlankProfile, direction: FloatArray) -> FloatArray
 
     θ counts from a root, which may be turned.
     """
-    return np.asarray(direction - np.angle(profile.turn)) if profile.is_turned else direction
+    return np.asarray(direction - np.angle(profile.turn))

@@ -68,12 +68,12 @@ class Zoom:
 def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedContacts) -> list[PlacedBody]:
     """Return all bodies in the fixed frame at the pose of the guess."""
     angle = contacts.crank_angle
-    race_centre = complex(placement.race_centre(np.asarray(angle)))
+    race_centre = complex(placement.races(np.asarray(angle)).middle)
     disc_centre = race_centre + complex(contacts.disc_x, contacts.disc_y)
     wheel_turn = angle / placement.reduction_ratio + contacts.wheel_angle
     pin_places = placement.wheel_pin_centres * np.exp(1j * wheel_turn)
     rays = np.exp(1j * placement.roller_angles(np.asarray(angle)))
-    races, own = placement.race_centres(np.asarray(angle)), placement.roller_cranks
+    races, own = placement.races(np.asarray(angle)).centre, placement.roller_cranks
     shift = complex(contacts.disc_x, contacts.disc_y)
     bores = bore_displacements(placement, angle, shift, contacts.disc_rotation)
     # Rollers are drawn in the middle between the races.
@@ -101,8 +101,8 @@ def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedCo
 def choose_zooms(contacts: ExpectedContacts, placement: Placement) -> list[Zoom]:
     """Return a window on the most loaded contact of each kind."""
     angle = np.asarray(contacts.crank_angle)
-    disc_centre = complex(placement.race_centre(angle)) + complex(contacts.disc_x, contacts.disc_y)
-    races, turn = placement.race_centres(angle)[placement.roller_cranks], np.exp(1j * contacts.disc_rotation)
+    disc_centre = complex(placement.races(angle).middle) + complex(contacts.disc_x, contacts.disc_y)
+    races, turn = placement.races(angle).centre[placement.roller_cranks], np.exp(1j * contacts.disc_rotation)
     kinds: dict[PairKind, tuple[ContactGroup, ComplexArray]] = {
         "pin": (contacts.pins, disc_centre + contacts.flank_points * turn),
         "roller_outer": (contacts.rollers_outer, disc_centre + contacts.bore_points * turn),

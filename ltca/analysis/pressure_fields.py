@@ -95,7 +95,7 @@ def recover_pressure(
 
         solved, largest = solve_tilted(kind, load, moment, effective_radius, departure)
     x, y, pressure = solved.unfolded()
-    shear, mid, half_width = SubsurfaceShear(max_shear=0.0, depth=0.0, x=0.0), 0.0, 0.0
+    shear, mid, half_width = SubsurfaceShear(0.0, 0.0), 0.0, 0.0
     if y[0] < 0.0 < y[-1]:  # what carries beside the middle has nothing there
         shear, mid, half_width = find_subsurface_shear(solved, poisson_ratio), solved.mid_pressure, solved.half_width
     return PressureField(

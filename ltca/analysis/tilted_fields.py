@@ -10,7 +10,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Departure, Separation
 from ltca.contact.pressure_cells import PatchPressure
-from ltca.contact.tilted_grid import press_tilted, recover_tilted
+from ltca.contact.tilted_grid import press_tilted
 from ltca.errors import ConvergenceError
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
@@ -75,8 +75,9 @@ def solve_tilted(
     # Deep enough for something to touch whatever the relief.
     begin = start + max(0.0, float(np.min(kind.relief(np.linspace(-half, half, 33))))), 0.0
     approach, tilt = _pressed(by_grids, load, moment, half, _pressed(by_slices, load, moment, half, begin))
-    patch = recover_tilted(kind, separation, approach, tilt)
-    assert patch is not None
+    pressed = press_tilted(kind, separation, approach, tilt)
+    assert pressed is not None
+    patch = pressed.patch
     scale = load / patch.load
     return replace(patch, pressure=scale * patch.pressure), scale * PatchAlongWidth.of_patch(patch, kind).largest()[0]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,7 +13,7 @@ from ltca.arrays import FloatArray
 from ltca.contact.free_end import FreeEnds, free_ends_of
 from ltca.drive.hole_contact import hole_modulus
 from ltca.drive.parts import Disc, Drive, Material, contact_modulus
-from ltca.geometry.length_profile import SummedProfile, generator_profile, has_lead, lead_relief
+from ltca.geometry.length_profile import Relief, generator_profile, has_lead, lead_relief
 
 Departure = Callable[[FloatArray], FloatArray]
 
@@ -28,39 +29,35 @@ class ContactKind:
 
     Attributes
     ----------
-    length : float
-        Length of the contact line, mm.
-    contact_modulus : float
-        E*, MPa.
-    generator : SummedProfile or None
-        Crown and relief along the length; None for cylinders.
+    length, contact_modulus : float
+        Length of the contact line, mm, and E*, MPa.
+    generator, lead : Relief or None, Disc or None
+        Crown and relief along the length, and the disc whose flank has a lead; None where they are straight.
     symmetric : bool
         Whether the separation is even along the profile (circles) or not (flanks).
     cells : int
         Cells over the half-width and over half the length.
-    lead : Disc or None
-        Disc whose flank has a lead; None where it is straight.
     free_ends : tuple of FreeEnds
         Of the bodies, which the law in slices knows; half-spaces where there are none.
     """
 
     length: float
     contact_modulus: float
-    generator: SummedProfile | None
-    symmetric: bool
+    generator: Relief | None = None
+    symmetric: bool = True
     cells: int = CELLS
     lead: Disc | None = None
     free_ends: tuple[FreeEnds, ...] = ()
 
+    def aligned_relief(self, z: ArrayLike) -> FloatArray:
+        """Return by how much the profile alone falls short at heights above mid-width, mm."""
+        height = np.asarray(z, dtype=float)
+        return np.zeros(height.shape) if self.generator is None else self.generator.relief(height)
+
     def relief(self, z: ArrayLike) -> FloatArray:
         """Return by how much profile and lead fall short at heights above mid-width, mm."""
-        height = np.asarray(z, dtype=float)
-        total = np.zeros(height.shape)
-        if self.generator is not None:
-            total = total + self.generator.relief(height)
-        if self.lead is not None:
-            total = total + lead_relief(self.lead, height)
-        return total
+        relief = self.aligned_relief(z)
+        return relief if self.lead is None else relief + lead_relief(self.lead, np.asarray(z, dtype=float))
 
     @property
     def end_cell(self) -> float:
@@ -83,27 +80,15 @@ class ContactKinds:
         bearing, wheel, parts, wide = drive.crank_bearing, drive.pin_wheel, drive.materials, drive.disc.thickness
         roller = generator_profile(bearing.roller_profile, drive.roller_length, bearing.roller_radius)
 
-        def kind(
-            length: float,
-            bodies: tuple[Material, Material],
-            generator: SummedProfile | None = None,
-            *,
-            flank: bool = False,
-        ) -> ContactKind:
-            return ContactKind(
-                length=length,
-                contact_modulus=contact_modulus(*bodies),
-                generator=generator,
-                symmetric=not flank,
-                cells=cells,
-                lead=drive.disc if flank and has_lead(drive.disc) else None,
-            )
+        def kind(length: float, bodies: tuple[Material, Material], **own: Any) -> ContactKind:
+            return ContactKind(length=length, contact_modulus=contact_modulus(*bodies), cells=cells, **own)
 
         pin = generator_profile(wheel.pin_profile, wide, wheel.pin_radius)
+        lead = drive.disc if has_lead(drive.disc) else None
         return cls(
-            pins=kind(wide, (parts.disc, drive.flank_pin), pin, flank=True),
-            inner=kind(drive.roller_length, (parts.inner_race, parts.roller), roller),
-            outer=kind(drive.roller_length, (parts.disc, parts.roller), roller),
+            pins=kind(wide, (parts.disc, drive.flank_pin), generator=pin, symmetric=False, lead=lead),
+            inner=kind(drive.roller_length, (parts.inner_race, parts.roller), generator=roller),
+            outer=kind(drive.roller_length, (parts.disc, parts.roller), generator=roller),
             holes=kind(wide, (parts.disc, drive.hole_pin)),
         )
 
@@ -122,21 +107,16 @@ class ContactKinds:
             hole_pin = (_length_about(drive, drive.shaft_pin_span), drive.hole_pin)
         sleeved = wheel.seat.kind == "sleeve", shaft is not None and shaft.seat.kind == "sleeve"
 
-        def ending(kind: ContactKind, whole: float, *bodies: tuple[float, Material] | None) -> ContactKind:
+        def ending(kind: ContactKind, modulus: float, *bodies: tuple[float, Material] | None) -> ContactKind:
             given = [(own, part.plane_strain_compliance, part.poisson_ratio) for own, part in filter(None, bodies)]
-            return replace(kind, free_ends=free_ends_of(kind.length, whole, given))
+            return replace(kind, free_ends=free_ends_of(kind.length, 1.0 / modulus, given))
 
-        return replace(
-            self,
-            pins=ending(self.pins, 1.0 / self.pins.contact_modulus, disc, None if sleeved[0] else flank_pin),
-            inner=ending(self.inner, 1.0 / self.inner.contact_modulus, (wide, parts.inner_race), (long, parts.roller)),
-            outer=ending(self.outer, 1.0 / self.outer.contact_modulus, disc, (long, parts.roller)),
-            holes=ending(
-                self.holes,
-                1.0 / hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins),
-                disc,
-                None if rigid_shaft_pins or sleeved[1] else hole_pin,
-            ),
+        in_holes = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins)
+        return ContactKinds(
+            pins=ending(self.pins, self.pins.contact_modulus, disc, None if sleeved[0] else flank_pin),
+            inner=ending(self.inner, self.inner.contact_modulus, (wide, parts.inner_race), (long, parts.roller)),
+            outer=ending(self.outer, self.outer.contact_modulus, disc, (long, parts.roller)),
+            holes=ending(self.holes, in_holes, disc, None if rigid_shaft_pins or sleeved[1] else hole_pin),
         )
 
 
@@ -149,16 +129,9 @@ def _length_about(drive: Drive, span: float) -> float:
 class Separation:
     """Separation of two surfaces about the point where they touch.
 
-    Attributes
-    ----------
-    effective_radius : float
-        ρ there, from which the width of the contact is expected, mm.
-    departure : callable
-        Separation in mm at one of the fixed places, by its number, over the distance along the tangent in mm.
-    place : int
-        Place below, 0 where there is but one.
-    part : float
-        Fraction of the way from it to the next place, 0 to 1; the separation is interpolated between both.
+    `departure` gives it at one of some fixed places, by its number, over the distance along the tangent, mm; the contact stands
+    the fraction `part` of the way from `place` to the next one, and its separation is interpolated between both. From the
+    effective radius ρ there, mm, the width of the contact is expected.
     """
 
     effective_radius: float

@@ -81,27 +81,22 @@ def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_ra
 
     The approach δ has the shape (positions, pairs), mm; the effective radius ρ, mm, broadcasts to it.
     """
-    radius = np.broadcast_to(effective_radius, approach.shape)
-    closed = approach > 0.0
-    ratio = np.ones(approach.shape)
+    ratio, closed = np.ones(approach.shape), approach > 0.0
     if not np.any(closed):
         return ratio
-    delta, rho = approach[closed], radius[closed]
+    delta, rho = approach[closed], np.broadcast_to(effective_radius, approach.shape)[closed]
     if kind.generator is None:
         nodes, values = _cylinder_ratio(kind.cells)
         ratio[closed] = np.interp(np.log(kind.length) - 0.5 * np.log(rho * delta), nodes, values)
         return ratio
     approaches = np.linspace(np.log(_LIGHTEST * delta.max()), np.log(delta.max()), _APPROACHES)
-    spread = rho.max() / rho.min() > 1.01
-    radii = np.linspace(np.log(rho.min()), np.log(rho.max()), _RADII if spread else 1)
+    count = _RADII if rho.max() / rho.min() > 1.01 else 1
+    radii = np.linspace(np.log(rho.min()), np.log(rho.max()), count)
     table = np.array([[_ratio(kind, float(np.exp(d)), float(np.exp(r))) for d in approaches] for r in radii])
     along = np.array([np.interp(np.log(delta), approaches, row) for row in table])
-    if not spread:
-        ratio[closed] = along[0]
-        return ratio
-    place = (np.log(rho) - radii[0]) / (radii[1] - radii[0])
-    lower = np.clip(place.astype(np.intp), 0, _RADII - 2)
-    part = place - lower
-    columns = np.arange(delta.size)
-    ratio[closed] = (1.0 - part) * along[lower, columns] + part * along[lower + 1, columns]
+    place = np.interp(np.log(rho), radii, np.arange(count))
+    lower = place.astype(np.intp).clip(0, max(count - 2, 0))
+    part, columns = place - lower, np.arange(delta.size)
+    upper = np.minimum(lower + 1, count - 1)
+    ratio[closed] = (1.0 - part) * along[lower, columns] + part * along[upper, columns]
     return ratio

@@ -8,6 +8,7 @@ grids.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
@@ -16,15 +17,16 @@ import numpy as np
 from ltca.arrays import BoolArray, FloatArray
 from ltca.contact.contact_kind import ContactKind, Departure, Separation
 from ltca.contact.pressure_cells import (
-    GRID_ROOM,
+    GAUSS_WEIGHTS,
     PatchGrid,
     PatchPressure,
     ReliefFunction,
     expected_half_width,
-    graded_edges,
+    gauss_points,
+    mirrored,
     solve_patch,
 )
-from ltca.geometry.length_profile import SummedProfile
+from ltca.geometry.length_profile import Relief
 
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
@@ -40,14 +42,12 @@ FREE_GRADING = 1.25
 """The same of contacts that end within a profile, where pressure falls to zero by itself."""
 FIT = 0.08
 """Largest error of ln(half-width) of the rung on which `solve_fitted` accepts a contact."""
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
 class GridRung(NamedTuple):
-    """Shape of a grid.
+    """Shape of a grid in steps of `RUNG`: ln(half-width/length), and ln(body length/patch length).
 
-    `rung` is ln(half-width/length) in steps of `RUNG`; `reach_rung` is ln(body length/patch length) in such steps, for a
-    profiled contact that ends before the body does.
+    The second is that of a profiled contact that ends before the body does.
     """
 
     rung: int
@@ -56,24 +56,12 @@ class GridRung(NamedTuple):
 
 @cache
 def unit_grid(rung: GridRung, cells: int, symmetric: bool) -> PatchGrid:
-    """Return the grid of unit length on a rung; its influence matrix is kept with it.
-
-    `cells` are those over the half-width and over half the length; `symmetric` grids have the positive half in x only.
-    """
+    """Return the grid of unit length on a rung for contacts of a kind; its influence matrix is kept with it."""
     half_width = float(np.exp(rung.rung * RUNG))
     share = float(np.exp(-8.0 * rung.reach_rung * RUNG))
     grading = FREE_GRADING + share * (END_GRADING - FREE_GRADING)
-    x = half_width / cells * np.arange(int(np.ceil(GRID_ROOM * cells)) + 1.0)
-    return PatchGrid(
-        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
-        y_edges=graded_edges(1.0, cells, grading),
-        symmetric_x=symmetric,
-    )
-
-
-def rung_grid(kind: ContactKind, rung: GridRung) -> PatchGrid:
-    """Return the grid of unit length on a rung for contacts of a kind."""
-    return unit_grid(rung, kind.cells, kind.symmetric)
+    grid = PatchGrid.fitted(1.0, half_width, cells=cells, grading=grading)
+    return grid if symmetric else replace(grid, x_edges=mirrored(grid.x_edges), symmetric_x=False)
 
 
 def smooth_step(part: float) -> float:
@@ -82,7 +70,7 @@ def smooth_step(part: float) -> float:
     return part * part * (3.0 - 2.0 * part)
 
 
-def find_reach_place(length: float, generator: SummedProfile | None, approach: float) -> float:
+def find_reach_place(length: float, generator: Relief | None, approach: float) -> float:
     """Return ln(body length/overlap) in rungs: how far a profiled contact ends before the body does."""
     if generator is None:
         return 0.0
@@ -105,7 +93,7 @@ def expected_cells(kind: ContactKind, rung: GridRung, effective_radius: float, a
     if kind.generator is None:
         width = round(SHADES * find_width_place(kind.length, rung.reach_rung, effective_radius, approach))
         return _cylinder_cells(width, rung, kind.cells, kind.symmetric)
-    grid = rung_grid(kind, rung)
+    grid = unit_grid(rung, kind.cells, kind.symmetric)
     return np.repeat(np.abs(grid.x_centres) < np.exp(rung.rung * RUNG), grid.shape[1]).reshape(grid.shape)
 
 
@@ -123,33 +111,26 @@ def _cylinder_cells(width: int, rung: GridRung, cells: int, symmetric: bool) -> 
 
 
 def unit_separations(
-    grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction | None, middle: float = 0.0
+    grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction, middle: float = 0.0
 ) -> FloatArray:
     """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places).
 
     The patch has a length and a middle along the width, mm; `relief` is that along the width.
     """
-    points = grid.x_centres[:, None] + 0.5 * np.diff(grid.x_edges)[:, None] * _POINTS
+    points = gauss_points(grid.x_edges)
     units = np.empty((*grid.shape, separation.weights.size))
     for number in range(units.shape[2]):
-        along_x = separation.departure(separation.place + number, points * length) @ _WEIGHTS / (2.0 * length)
+        along_x = separation.departure(separation.place + number, points * length) @ GAUSS_WEIGHTS / (2.0 * length)
         units[..., number] = along_x[:, None]
-    if relief is not None:
-        heights = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _POINTS
-        units += (relief(middle + length * heights) @ _WEIGHTS / (2.0 * length))[None, :, None]
+    heights = middle + length * gauss_points(grid.y_edges)
+    units += (relief(heights) @ GAUSS_WEIGHTS / (2.0 * length))[None, :, None]
     return units.reshape(-1, units.shape[2])
 
 
-def aligned_relief(kind: ContactKind) -> ReliefFunction | None:
-    """Return the relief of contacts that do not tilt: that of their generator."""
-    return None if kind.generator is None else kind.generator.relief
-
-
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchPressure:
-    """Return the pressure over a contact on the grid that fits its half-width.
+    """Return the pressure over a contact on the grid that fits its half-width; approach δ and effective radius ρ are in mm.
 
-    Approach δ and effective radius ρ are in mm; `departure` gives the separation in mm over the distance along the tangent in
-    mm.
+    `departure` gives the separation over the distance along the tangent, both in mm.
     """
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
@@ -157,8 +138,8 @@ def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, de
     rung = GridRung(round(find_width_place(kind.length, reach, effective_radius, approach)), reach)
     start = expected_cells(kind, rung, effective_radius, approach)
     for trial in range(2):
-        grid = rung_grid(kind, rung)
-        unit = unit_separations(grid, separation, length, aligned_relief(kind)).reshape(grid.shape)
+        grid = unit_grid(rung, kind.cells, kind.symmetric)
+        unit = unit_separations(grid, separation, length, kind.aligned_relief).reshape(grid.shape)
         solved = solve_patch(grid, unit, 1.0, approach / length, start=start)
         place = float(np.log(max(solved.half_width, 1e-300))) / RUNG
         if trial or solved.half_width <= 0.0 or abs(place - rung.rung) * RUNG <= FIT:

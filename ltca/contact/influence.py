@@ -114,34 +114,28 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
     gap = np.maximum(np.abs(distance) - 0.5 * (lengths[:, None] + lengths[None, :]), lags[:, None, None] - width)
     longest = np.maximum(lengths[:, None], lengths[None, :])
     far = gap >= np.maximum(_FAR_LENGTHS * longest, _FAR_WIDTHS * width)
-    m, i, j = np.nonzero(far)
-    for first in range(0, m.size, _PAIRS_AT_ONCE):
-        few = m[first : first + _PAIRS_AT_ONCE], i[first : first + _PAIRS_AT_ONCE], j[first : first + _PAIRS_AT_ONCE]
-        block[few] = _far_mean(lags[few[0]], width, distance[few], lengths[few[1]], lengths[few[2]])
+    pairs = np.nonzero(far)
+    for first in range(0, pairs[0].size, _PAIRS_AT_ONCE):
+        m, i, j = (each[first : first + _PAIRS_AT_ONCE] for each in pairs)
+        block[m, i, j] = _far_mean(lags[m], width, distance[m, i, j], lengths[i], lengths[j])
     return np.asarray(block)
 
 
 def lagged_influence(
-    cell_width: float,
-    lag_count: int,
-    y_edges: FloatArray,
-    *,
-    mirrored: bool,
-    end_plane: float = 0.0,
-    end_factor: float = 0.0,
+    cell_width: float, lag_count: int, y_edges: FloatArray, *, mirrored: bool, end_factor: float = 0.0
 ) -> FloatArray:
     """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
 
     Axis 0 is the lag in x, 0, 1, … cells of `cell_width` (mm); `y_edges` are the n + 1 ascending edges along y, mm.
     `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start; `end_factor` times the images in
-    the planes y = ±`end_plane` (mm) are added for free ends (`ltca.contact.free_end`).
+    the planes of their ends, y = ±`y_edges[-1]`, are added for free ends (`ltca.contact.free_end`).
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
     for sign in (1.0, -1.0) if mirrored else (1.0,):
         total += _lagged_block(lags, cell_width, y_edges, sign)
         if end_factor:
-            for shift in (2.0 * end_plane, -2.0 * end_plane):
+            for shift in (2.0 * y_edges[-1], -2.0 * y_edges[-1]):
                 total += end_factor * _lagged_block(lags, cell_width, y_edges, -sign, shift)
     return np.asarray(0.5 * cell_width**2 * (total + total.transpose(0, 2, 1)))
 
@@ -164,7 +158,6 @@ def assemble_influence_matrix(
     *,
     symmetric_x: bool = False,
     symmetric_y: bool = False,
-    end_plane: float = 0.0,
     end_factor: float = 0.0,
 ) -> FloatArray:
     """Return the area-weighted influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
@@ -172,7 +165,7 @@ def assemble_influence_matrix(
     It is symmetric and positive definite; divided by π E* it gives displacement moments. Edges are ascending, mm: uniform along
     the profile (x), of any spacing along the width (y). A symmetric direction is given by its positive half, edges from 0: the
     images of the cells are added, so that the matrix acts on that half alone and ``p·A·p / (2 π E*)`` is the energy of one half
-    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`end_plane` (mm) add their images times `end_factor`
+    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`y_edges[-1]` add their images times `end_factor`
     (`ltca.contact.free_end`).
     """
     widths = np.diff(x_edges)
@@ -182,19 +175,11 @@ def assemble_influence_matrix(
     if (symmetric_x and abs(x_edges[0]) > 1e-9 * width) or (symmetric_y and abs(y_edges[0]) > 1e-9 * y_edges[-1]):
         raise ValueError("the edges of a symmetric direction must start at 0")
     lags = lagged_influence(
-        width,
-        2 * count if symmetric_x else count,
-        y_edges,
-        mirrored=symmetric_y,
-        end_plane=end_plane,
-        end_factor=end_factor,
+        width, 2 * count if symmetric_x else count, y_edges, mirrored=symmetric_y, end_factor=end_factor
     )
-    ny = y_edges.size - 1
     index = np.arange(count)
-    matrix = np.empty((count, ny, count, ny))
-    for row in range(count):
-        block = lags[np.abs(row - index)]
-        if symmetric_x:
-            block = block + lags[row + index + 1]
-        matrix[row] = block.transpose(1, 0, 2)
-    return matrix.reshape(count * ny, count * ny)
+    blocks = lags[np.abs(index[:, None] - index)]
+    if symmetric_x:
+        blocks += lags[index[:, None] + index + 1]
+    size = count * (y_edges.size - 1)
+    return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size, size))

@@ -32,7 +32,12 @@ _SHORT_EDGE = 0.007
 # with 6 to 64 cells: 2√⟨x²⟩ is too large, the pressure of the first cell too small compared with the peak.
 _HALF_WIDTH_BIAS = 0.150
 _PEAK_BIAS = 0.114
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
+_GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def gauss_points(edges: FloatArray) -> FloatArray:
+    """Return the Gauss points of `GAUSS_WEIGHTS` in cells between edges, shape (cells, 4)."""
+    return np.asarray(0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS)
 
 
 def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
@@ -45,6 +50,11 @@ def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
     return np.asarray(0.5 * length * (1.0 - (1.0 - step) ** grading))
 
 
+def mirrored(edges: FloatArray) -> FloatArray:
+    """Return the edges of a whole patch from those of its positive half, which begin at 0."""
+    return np.concatenate([-edges[:0:-1], edges])
+
+
 def end_grading(slenderness: float) -> float:
     """Return the grading exponent for a patch of length/√(ρδ) = ``slenderness``: longer ones need smaller end cells."""
     return 2.5 + 0.25 * float(np.log(max(slenderness, 1.0)))
@@ -52,25 +62,16 @@ def end_grading(slenderness: float) -> float:
 
 @dataclass(frozen=True)
 class PatchGrid:
-    """Tensor grid over a patch, whole or the positive half in either direction.
+    """Tensor grid over a patch, whole or the positive half in either direction, by its edges along profile (x) and width (y), mm.
 
-    Parameters
-    ----------
-    x_edges : ndarray, shape (nx + 1,)
-        Uniform edges along the profile, mm; from 0 when ``symmetric_x``.
-    y_edges : ndarray, shape (ny + 1,)
-        Edges along the width, mm; from 0 when ``symmetric_y``.
-    symmetric_x, symmetric_y : bool
-        Whether the edges are those of the positive half of a symmetric patch.
-    end_plane, end_factor : float
-        Free ends of the bodies at y = ±`end_plane`, mm, and the weight of their images (`ltca.contact.free_end`).
+    Edges along x are uniform; those of a symmetric direction begin at 0. Bodies whose free ends are those of the patch have
+    images in them of the weight `end_factor` (`ltca.contact.free_end`).
     """
 
     x_edges: FloatArray
     y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
-    end_plane: float = 0.0
     end_factor: float = 0.0
 
     @classmethod
@@ -82,13 +83,12 @@ class PatchGrid:
         return cls(
             x_edges=np.asarray(half_width / cells * np.arange(count + 1.0)),
             y_edges=graded_edges(length, cells, grading),
-            end_plane=0.5 * length,
             end_factor=end_factor,
         )
 
     def scaled(self, size: float) -> PatchGrid:
         """Return the same grid so many times as large."""
-        return replace(self, x_edges=self.x_edges * size, y_edges=self.y_edges * size, end_plane=self.end_plane * size)
+        return replace(self, x_edges=self.x_edges * size, y_edges=self.y_edges * size)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -123,31 +123,19 @@ class PatchGrid:
             self.y_edges,
             symmetric_x=self.symmetric_x,
             symmetric_y=self.symmetric_y,
-            end_plane=self.end_plane,
             end_factor=self.end_factor,
         )
 
     def cell_means(self, function: Callable[[FloatArray, FloatArray], FloatArray]) -> FloatArray:
         """Return the mean of f(x, y) over every cell by 4 × 4 Gauss points, shape (nx, ny)."""
-        x, y = (
-            centres[:, None] + 0.5 * np.diff(edges)[:, None] * _GAUSS_POINTS
-            for centres, edges in ((self.x_centres, self.x_edges), (self.y_centres, self.y_edges))
-        )
+        x, y = gauss_points(self.x_edges), gauss_points(self.y_edges)
         values = np.broadcast_to(function(x[:, :, None, None], y[None, None]), x.shape + y.shape)
-        return np.asarray(np.einsum("iajb,a,b->ij", values, _GAUSS_WEIGHTS, _GAUSS_WEIGHTS) / 4.0)
+        return np.asarray(np.einsum("iajb,a,b->ij", values, GAUSS_WEIGHTS, GAUSS_WEIGHTS) / 4.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PatchPressure:
-    """Pressure over a patch.
-
-    Attributes
-    ----------
-    grid : PatchGrid
-        The grid it was solved on.
-    pressure : ndarray, shape (nx, ny)
-        Mean pressure of each cell, MPa.
-    """
+    """Mean pressure of each cell of a grid over a patch, MPa, shape (nx, ny)."""
 
     grid: PatchGrid
     pressure: FloatArray
@@ -171,9 +159,9 @@ class PatchPressure:
         """Return the edges of the cells along x and y and the pressure over the whole patch, images included; mm, mm, MPa."""
         x, y, pressure = self.grid.x_edges, self.grid.y_edges, self.pressure
         if self.grid.symmetric_x:
-            x, pressure = np.concatenate([-x[:0:-1], x]), np.concatenate([pressure[::-1], pressure])
+            x, pressure = mirrored(x), np.concatenate([pressure[::-1], pressure])
         if self.grid.symmetric_y:
-            y, pressure = np.concatenate([-y[:0:-1], y]), np.concatenate([pressure[:, ::-1], pressure], axis=1)
+            y, pressure = mirrored(y), np.concatenate([pressure[:, ::-1], pressure], axis=1)
         return x, y, pressure
 
     @property
@@ -230,24 +218,13 @@ class PatchPressure:
 
 @dataclass(frozen=True, kw_only=True)
 class PatchSolution(PatchPressure):
-    """Pressure over a patch at a given approach.
-
-    Attributes
-    ----------
-    energy : float
-        ∫ F dδ, N·mm.
-    """
+    """Pressure over a patch at a given approach, with its energy ∫ F dδ, N·mm."""
 
     energy: float
 
 
 def solve_patch(
-    grid: PatchGrid,
-    separation: FloatArray,
-    contact_modulus: float,
-    approach: float,
-    *,
-    start: BoolArray | None = None,
+    grid: PatchGrid, separation: FloatArray, contact_modulus: float, approach: float, *, start: BoolArray | None = None
 ) -> PatchSolution:
     """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
 
@@ -257,9 +234,7 @@ def solve_patch(
     """
     penetration = (approach - separation.ravel()) * grid.areas.ravel()
     solution = solve_unilateral_contact(
-        grid.influence,
-        penetration / (1.0 / (np.pi * contact_modulus)),
-        start=None if start is None else start.ravel(),
+        grid.influence, penetration / (1.0 / (np.pi * contact_modulus)), start=None if start is None else start.ravel()
     )
     pressure = solution.pressure
     energy = 0.5 * grid.images * float(pressure @ penetration)
@@ -295,28 +270,11 @@ def solve_cylinder_patch(
 ) -> PatchSolution:
     """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
 
-    Parameters
-    ----------
-    length : float
-        Length of the line contact, mm.
-    effective_radius : float
-        1/(1/r1 + 1/r2), mm.
-    contact_modulus : float
-        E*, MPa.
-    approach : float
-        Approach at mid-width, mm, positive.
-    relief : callable, optional
-        z(y) ≥ 0, mm, symmetric: relief of the profile along the width.
-    cells : int
-        Cells over the half-width and over half the length.
-    half_width : float, optional
-        Expected edge of the contact, mm; from a grid of half as many cells by default.
-    grading : float, optional
-        Exponent of the cells along y, see `graded_edges`.
-    end_factor : float, optional
-        Weight of the images in free ends at ±length/2 (`ltca.contact.free_end`); 0 is the half-space.
-    start : PatchSolution, optional
-        Solution on the grid of half as many cells, for the initial contact cells.
+    Length, effective radius and approach at mid-width, which is positive, are in mm, E* in MPa; `relief` is that of the profile
+    along the width, even, mm. There are `cells` over the half-width and over half the length, with the edge of the contact
+    expected at `half_width`, mm, by default from a grid of half as many cells, and the exponent `grading` along y
+    (`graded_edges`). `end_factor` is the weight of images in free ends at ±length/2 (`ltca.contact.free_end`), 0 the half-space.
+    `start` is the solution on the grid of half as many cells, for the initial contact cells.
     """
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading
@@ -326,12 +284,10 @@ def solve_cylinder_patch(
         grid = PatchGrid.fitted(length, fitted, cells=count, grading=exponent, end_factor=end_factor)
         x = grid.x_edges
         means = (x[1:] ** 2 + x[1:] * x[:-1] + x[:-1] ** 2) / (6.0 * effective_radius)
-        along = np.zeros(count) if relief is None else _means_along(relief, grid)
-        guess = None
-        if before is not None:
-            guess = np.repeat(np.repeat(before.contact, 2, axis=0), 2, axis=1)
-            if guess.shape != grid.shape:
-                guess = None
+        along = np.zeros(count) if relief is None else relief(gauss_points(grid.y_edges)) @ GAUSS_WEIGHTS / 2.0
+        guess = None if before is None else np.repeat(np.repeat(before.contact, 2, axis=0), 2, axis=1)
+        if guess is not None and guess.shape != grid.shape:
+            guess = None
         return solve_patch(grid, means[:, None] + along[None, :], contact_modulus, approach, start=guess)
 
     if half_width is None:
@@ -360,9 +316,3 @@ def extrapolate(
     gains = {"energy": energy_gain, "load": energy_gain, "mid_pressure": field_gain, "half_width": field_gain}
     pairs = ((getattr(fine, name), getattr(coarse, name), gain) for name, gain in gains.items())
     return tuple(value + gain * (value - before) for value, before, gain in pairs)
-
-
-def _means_along(relief: ReliefFunction, grid: PatchGrid) -> FloatArray:
-    """Mean relief over every y cell by Gauss points."""
-    y = grid.y_centres[:, None] + 0.5 * np.diff(grid.y_edges)[:, None] * _GAUSS_POINTS
-    return np.asarray(relief(y) @ _GAUSS_WEIGHTS / 2.0)

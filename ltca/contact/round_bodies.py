@@ -32,24 +32,10 @@ def compressed_cylinder(radius: float, half_width: float) -> float:
 def held_ring_approach(inner: float, outer: float, half_width: float, kolosov: float, angle: FloatArray) -> FloatArray:
     r"""Return approaches at angles from a loaded patch, as multiple of 2(1 − ν²)/(πEt).
 
-    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the
-    normal at its middle, and the mean of the displacement with the same weights.
-
-    Parameters
-    ----------
-    inner, outer : float
-        Radii of the held and of the loaded circle, mm.
-    half_width : float
-        Of the patches, along the wall, mm.
-    kolosov : float
-        Kolosov's constant: 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
-    angle : array, shape (m,)
-        Between load and place, rad.
-
-    Returns
-    -------
-    array, shape (m,)
-        Positive into the body.
+    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the normal at
+    its middle, and the mean of the displacement with the same weights. The radii of the held and of the loaded circle and the
+    half-width of the patches along the wall are in mm, angles between load and place in rad, shape (m,), as the approaches,
+    which are positive into the body. Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
     """
     width, ratio = max(half_width / outer, NARROW), inner / outer
     count = max(int(RESOLUTION / width), 64)
@@ -86,28 +72,32 @@ def _harmonics(
     """Harmonics +m and −m of the displacement at the outer circle."""
     m = order.astype(float)
     # Unknown: a of 1 + m and b of m − 1 by powers of the outer radius, a of 1 − m and b of −m − 1 by those of the inner.
-    inside, nothing = ratio**m, np.zeros_like(m)
-    held_plus = [kolosov * ratio * inside, nothing, m - 1.0, -np.ones_like(m)]
-    held_minus = [-(1.0 + m) * ratio * inside, -inside / ratio, kolosov * np.ones_like(m), nothing]
-    pulled_plus = [(1.0 + m) * (1.0 - m), 1.0 - m, (1.0 - m) * inside / ratio, nothing]
-    pulled_minus = [1.0 + m, nothing, (1.0 - m) * (1.0 + m) * inside / ratio, (m + 1.0) * ratio * inside]
-    moved_plus = [kolosov + nothing, nothing, (m - 1.0) * inside / ratio, -ratio * inside]
-    moved_minus = [-(1.0 + m), nothing - 1.0, kolosov * inside / ratio, nothing]
-    # Of the first harmonic two are others: in the place of a of 0 stands A ln z, in that of b of 0 a shift of the whole.
-    for row, entry in (
-        (held_plus, (kolosov * ratio**2, 0.0, -1.0, -1.0)),
-        (held_minus, (-2.0 * ratio**2, 1.0, 2.0 * kolosov * np.log(ratio), 0.0)),
-        (pulled_plus, (0.0, 0.0, 1.0 + kolosov, 0.0)),
-        (pulled_minus, (2.0, 0.0, 2.0, 2.0 * ratio**2)),
-        (moved_plus, (kolosov, 0.0, -1.0, -(ratio**2))),
-        (moved_minus, (-2.0, 1.0, 0.0, 0.0)),
-    ):
-        for column, value in zip(row, entry, strict=True):
-            column[0] = value
-    rows = (held_plus, held_minus, pulled_plus, pulled_minus)
-    system = np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    inside = ratio**m
+
+    def row(*entries: FloatArray | float, first: tuple[float, float, float, float]) -> FloatArray:
+        """Factors of the unknowns, shape (orders, 4); of the first harmonic two unknowns are others."""
+        found = np.stack([np.broadcast_to(entry, m.shape) for entry in entries], axis=-1)
+        # In the place of a of 0 stands A ln z, in that of b of 0 a shift of the whole.
+        found[0] = first
+        return found
+
+    held_plus = row(kolosov * ratio * inside, 0.0, m - 1.0, -1.0, first=(kolosov * ratio**2, 0.0, -1.0, -1.0))
+    held_minus = row(
+        -(1.0 + m) * ratio * inside, -inside / ratio, kolosov, 0.0,
+        first=(-2.0 * ratio**2, 1.0, 2.0 * kolosov * np.log(ratio), 0.0),
+    )  # fmt: skip
+    pulled_plus = row(
+        (1.0 + m) * (1.0 - m), 1.0 - m, (1.0 - m) * inside / ratio, 0.0, first=(0.0, 0.0, 1.0 + kolosov, 0.0)
+    )
+    pulled_minus = row(
+        1.0 + m, 0.0, (1.0 - m) * (1.0 + m) * inside / ratio, (m + 1.0) * ratio * inside,
+        first=(2.0, 0.0, 2.0, 2.0 * ratio**2),
+    )  # fmt: skip
+    moved_plus = row(kolosov, 0.0, (m - 1.0) * inside / ratio, -ratio * inside, first=(kolosov, 0.0, -1.0, -(ratio**2)))
+    moved_minus = row(-(1.0 + m), -1.0, kolosov * inside / ratio, 0.0, first=(-2.0, 1.0, 0.0, 0.0))
+    system = np.stack([held_plus, held_minus, pulled_plus, pulled_minus], axis=-2)
     # Tractions of harmonic k are those of the patch's weight of k − 1: its direction is that of its middle.
+    nothing = np.zeros_like(m)
     right = np.stack([nothing, nothing, load[order - 1], load[order + 1]], axis=-1)
     found = np.linalg.solve(system, right[..., None])[..., 0]
-    plus, minus = (np.sum(np.stack(row, axis=-1) * found, axis=-1) for row in (moved_plus, moved_minus))
-    return plus, minus
+    return np.sum(moved_plus * found, axis=-1), np.sum(moved_minus * found, axis=-1)

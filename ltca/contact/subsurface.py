@@ -11,7 +11,7 @@ long: every term is a corner function that stays of order one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,12 +40,7 @@ def rectangle_stress(
     )
     total = np.zeros((*x.shape, 6))
     slack = 1.0 - 2.0 * poisson_ratio
-    for sign, across, along in (
-        (1.0, x + a, y + b),
-        (-1.0, x + a, y - b),
-        (-1.0, x - a, y + b),
-        (1.0, x - a, y - b),
-    ):
+    for sign, across, along in ((1.0, x + a, y + b), (-1.0, x + a, y - b), (-1.0, x - a, y + b), (1.0, x - a, y - b)):
         r = np.sqrt(across**2 + along**2 + z**2)
         square_x, square_y = across**2 + z**2, along**2 + z**2
         product = across * along
@@ -99,23 +94,11 @@ def max_shear_stress(stress: FloatArray) -> FloatArray:
     return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SubsurfaceShear:
-    """Largest shear stress below mid-width.
-
-    Attributes
-    ----------
-    max_shear : float
-        MPa.
-    depth : float
-        mm.
-    x : float
-        Place along the profile, under the peak of the pressure, mm.
-    """
+class SubsurfaceShear(NamedTuple):
+    """Largest shear stress below mid-width, MPa, under the peak of the pressure, and its depth, mm."""
 
     max_shear: float
     depth: float
-    x: float
 
 
 def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> SubsurfaceShear:
@@ -134,9 +117,7 @@ def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> Subs
     top = int(np.clip(np.argmax(shear), 1, _DEPTHS - 2))
     bend, slope, crest = np.polyfit(np.log(depths[top - 1 : top + 2] / depths[top]), shear[top - 1 : top + 2], 2)
     offset = float(np.clip(-0.5 * slope / bend, -0.1, 0.1))
-    return SubsurfaceShear(
-        max_shear=float(crest + 0.5 * slope * offset), depth=float(depths[top] * np.exp(offset)), x=place
-    )
+    return SubsurfaceShear(float(crest + 0.5 * slope * offset), float(depths[top] * np.exp(offset)))
 
 
 LINE_SHEAR = 0.3002831

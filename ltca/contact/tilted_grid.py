@@ -22,7 +22,7 @@ import numpy as np
 from ltca.arrays import BoolArray, FloatArray, freeze
 from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.fitted_grid import BLEND, END_GRADING, FREE_GRADING, RUNG, smooth_step, unit_separations
-from ltca.contact.pressure_cells import PatchGrid, PatchPressure, expected_half_width, graded_edges
+from ltca.contact.pressure_cells import PatchGrid, PatchPressure, expected_half_width, graded_edges, mirrored
 from ltca.contact.unilateral import solve_unilateral_contact
 
 STEP = 2.0 * RUNG
@@ -73,19 +73,9 @@ class Patch(NamedTuple):
 class TiltedPiece:
     """Coefficients of a contact on one grid with its contact cells held: linear in approach, tilt and separation.
 
-    Attributes
-    ----------
-    shape : GridShape
-        Of the grid.
-    place : int
-        Place of the separation, see `ltca.contact.contact_kind.Separation`.
-    patch : Patch
-        Where it lies; its depth does not matter.
-    active : array of bool, shape (cells,)
-        Contact cells.
-    rate, opening_rate : array, shape (cells, 2 + places)
-        Pressure by E*, and opening, per approach in the middle of the patch by its length, per tilt, and per separation at each
-        place, by which it is less.
+    It belongs to the grid of a shape, a place of the separation (`ltca.contact.contact_kind.Separation`) and a patch, whose
+    depth does not matter. `rate` and `opening_rate`, shape (cells, 2 + places), are the pressure by E*, and the opening, per
+    approach in the middle of the patch by its length, per tilt, and per separation at each place, by which it is less.
     """
 
     shape: GridShape
@@ -109,13 +99,10 @@ class TiltedPiece:
         return bool(np.min(self.opening_rate[:, : closing.size] @ closing) >= -slack)
 
 
-TiltedPieces = tuple[TiltedPiece, ...]
-
-
 class TiltedPress(NamedTuple):
     """A pressed contact: load and moment with their derivatives, N, mm and rad, its energy, N·mm, and what is behind it.
 
-    `edges` are those of the cells along the width, mm, `line_load` is what they carry, N/mm: of the grid with the largest share.
+    Of the grids that are blended `patch` is the pressure on the one with the largest share.
     """
 
     load: float
@@ -124,9 +111,8 @@ class TiltedPress(NamedTuple):
     by_tilt: float
     moment_by_tilt: float
     energy: float
-    edges: FloatArray
-    line_load: FloatArray
-    pieces: TiltedPieces
+    patch: PatchPressure
+    pieces: tuple[TiltedPiece, ...]
 
 
 @lru_cache(maxsize=KEPT)
@@ -137,7 +123,7 @@ def whole_grid(shape: GridShape, cells: int, symmetric: bool) -> PatchGrid:
         graded_edges(1.0, cells, END_GRADING if end else FREE_GRADING) for end in (shape.lower_end, shape.upper_end)
     )
     return PatchGrid(
-        x_edges=x if symmetric else np.concatenate([-x[:0:-1], x]),
+        x_edges=x if symmetric else mirrored(x),
         y_edges=np.concatenate([-lower[:0:-1], upper]),
         symmetric_x=symmetric,
         symmetric_y=False,
@@ -185,47 +171,36 @@ def press_tilted(
     patch = find_patch(kind, approach, tilt)
     if patch is None:
         return None
-    shares = _find_shares(patch, separation.effective_radius)
     found = []
-    for shape, share in shares.items():
+    for shape, share in _find_shares(patch, separation.effective_radius).items():
         piece = _settle(kind, shape, patch, separation, approach, tilt, start)
         found.append((share, piece, *_press_piece(kind, piece, separation, approach, tilt)))
-    values = np.sum([share * numbers for share, _, numbers, *_ in found], axis=0)
+    values = np.sum([share * numbers for share, _, numbers, _ in found], axis=0)
     if len(found) > 1:
         # Shares differ in what multiplies 1e-4 of the load: differences do.
-        sizes = np.array((1e-6 * patch.depth, 1e-6 * patch.depth / kind.length))
-        for column, (by_approach, by_tilt) in enumerate(((1.0, 0.0), (0.0, 1.0))):
-            ends = []
-            for sign in (-1.0, 1.0):
-                moved = find_patch(kind, approach + sign * by_approach * sizes[0], tilt + sign * by_tilt * sizes[1])
-                ends.append({} if moved is None else _find_shares(moved, separation.effective_radius))
-            for _, piece, numbers, *_ in found:
-                slope = (ends[1].get(piece.shape, 0.0) - ends[0].get(piece.shape, 0.0)) / (2.0 * sizes[column])
+        size = 1e-6 * patch.depth
+        for column, (by_approach, by_tilt) in enumerate(((size, 0.0), (0.0, size / kind.length))):
+            before, after = (
+                _find_shares(
+                    find_patch(kind, approach + sign * by_approach, tilt + sign * by_tilt), separation.effective_radius
+                )
+                for sign in (-1.0, 1.0)
+            )
+            for _, piece, numbers, _ in found:
+                difference = after.get(piece.shape, 0.0) - before.get(piece.shape, 0.0)
+                slope = difference / (2.0 * (by_approach + by_tilt))
                 values[2 + column] += slope * numbers[0]
                 if column:
                     values[4] += slope * numbers[1]
-    most = max(found, key=lambda each: each[0])
-    load, moment, by_approach, by_tilt, turning, energy = (float(value) for value in values)
-    return TiltedPress(load, moment, by_approach, by_tilt, turning, energy, *most[3:], tuple(each[1] for each in found))
+    *_, pressed = max(found, key=lambda each: each[0])
+    load, moment, stiffness, mixed, turning, energy = (float(value) for value in values)
+    return TiltedPress(load, moment, stiffness, mixed, turning, energy, pressed, tuple(piece for _, piece, *_ in found))
 
 
-def recover_tilted(
-    kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
-) -> PatchPressure | None:
-    """Return the pressure over a contact on the grid that fits it best, None where it is open; as for `press_tilted`."""
-    patch = find_patch(kind, approach, tilt)
+def _find_shares(patch: Patch | None, effective_radius: float) -> dict[GridShape, float]:
+    """Grids that are blended for a patch and their parts; none for a contact that is open."""
     if patch is None:
-        return None
-    shares = _find_shares(patch, separation.effective_radius)
-    shape = max(shares, key=lambda each: shares[each])
-    piece = _settle(kind, shape, patch, separation, approach, tilt, start)
-    grid = whole_grid(shape, kind.cells, kind.symmetric)
-    pressure = np.maximum(piece.pressure(patch.closing(approach, tilt, separation)), 0.0).reshape(grid.shape)
-    placed = replace(grid.scaled(patch.length), y_edges=patch.middle + grid.y_edges * patch.length)
-    return PatchPressure(grid=placed, pressure=kind.contact_modulus * pressure)
-
-
-def _find_shares(patch: Patch, effective_radius: float) -> dict[GridShape, float]:
+        return {}
     half_width = expected_half_width(patch.length, effective_radius, patch.depth)
     place = float(np.log(half_width / patch.length)) / STEP
     below = int(np.floor(place))
@@ -243,8 +218,8 @@ def _find_shares(patch: Patch, effective_radius: float) -> dict[GridShape, float
 
 def _press_piece(
     kind: ContactKind, piece: TiltedPiece, separation: Separation, approach: float, tilt: float
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Load, moment, ∂F/∂δ, ∂F/∂θ, ∂M/∂θ and energy on one grid; edges along the width and line loads."""
+) -> tuple[FloatArray, PatchPressure]:
+    """Load, moment, ∂F/∂δ, ∂F/∂θ, ∂M/∂θ and energy on one grid; its pressures where the patch lies."""
     patch, grid = piece.patch, whole_grid(piece.shape, kind.cells, kind.symmetric)
     length, flat = patch.length, grid.areas.ravel()
     pressure = np.maximum(piece.pressure(patch.closing(approach, tilt, separation)), 0.0)
@@ -258,8 +233,8 @@ def _press_piece(
     pairs = ((pressure, 1.0), (pressure, arm), (by_approach, 1.0), (by_tilt, 1.0), (by_tilt, arm),
              (0.5 * pressure, approach + tilt * arm - gap))  # fmt: skip
     numbers = np.array([scale * (values @ (flat * weight)) for values, weight in pairs])
-    line = grid.images * kind.contact_modulus * length * (np.diff(grid.x_edges) @ pressure.reshape(grid.shape))
-    return numbers, patch.middle + length * grid.y_edges, line
+    placed = replace(grid.scaled(length), y_edges=patch.middle + length * grid.y_edges)
+    return numbers, PatchPressure(grid=placed, pressure=kind.contact_modulus * pressure.reshape(grid.shape))
 
 
 def _settle(

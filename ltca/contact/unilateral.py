@@ -8,7 +8,7 @@ cells has not fallen for a few steps single cells are exchanged by Murty's rule 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,28 +21,16 @@ _BLOCK_TRIALS = 4
 """Block exchanges without fewer offending cells before single cells are exchanged."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UnilateralSolution:
+class UnilateralSolution(NamedTuple):
     """Solution of a unilateral contact problem.
 
-    Attributes
-    ----------
-    pressure : ndarray, shape (n,)
-        Non-negative pressures; zero outside the contact.
-    active : ndarray of bool, shape (n,)
-        Cells in contact.
-    opening : ndarray, shape (n,)
-        ``A p − penetration``; zero in the contact, non-negative outside (in the unit of ``penetration``).
-    rate : ndarray, shape (n,) or (n, directions)
-        Solution of ``A q = load_direction`` on the contact, zero outside: the exact tangent of the pressure when
-        the penetration grows by ``load_direction`` (all zeros when no direction was given).
-    history : tuple of int
-        Number of offending cells before each solve.
+    Pressures are non-negative, zero outside the `active` cells, which are in contact. `rate` solves A q = load_direction on the
+    contact, zero outside: the exact tangent of the pressure when the penetration grows by that, all zeros when no direction was
+    given. `history` has the number of offending cells before each solve.
     """
 
     pressure: FloatArray
     active: BoolArray
-    opening: FloatArray
     rate: FloatArray
     history: tuple[int, ...]
 
@@ -56,22 +44,10 @@ def solve_unilateral_contact(
 ) -> UnilateralSolution:
     """Solve p ≥ 0, A p − penetration ≥ 0, p·(A p − penetration) = 0 exactly by block principal pivoting.
 
-    Parameters
-    ----------
-    influence : ndarray, shape (n, n)
-        Symmetric positive definite matrix A.
-    penetration : ndarray, shape (n,)
-        Right-hand side: the overlap of the undeformed bodies (area-weighted if A is).
-    start : ndarray of bool, shape (n,), optional
-        Initial contact cells; default where ``penetration`` is positive.
-    load_direction : ndarray, shape (n,) or (n, directions), optional
-        Directions of change of the penetration for the tangent ``rate``.
-
-    Raises
-    ------
-    ConvergenceError
-        If A is not positive definite on a contact set, or the iterations run out; its history is the number
-        of offending cells.
+    A is `influence`, symmetric positive definite, shape (n, n); `penetration` is the overlap of the undeformed bodies
+    (area-weighted if A is), and contact cells are initially `start`, by default those where it is positive. `load_direction`,
+    shape (n,) or (n, directions), asks for the tangent `rate`. ConvergenceError if A is not positive definite on a contact set,
+    or the iterations run out; its history is the number of offending cells.
 
     References
     ----------
@@ -105,20 +81,14 @@ def solve_unilateral_contact(
         if offenders == 0:
             if load_direction is not None and factor is not None:
                 rate[inside] = lapack.dpotrs(factor, load_direction[inside], lower=1)[0]
-            return UnilateralSolution(
-                pressure=pressure, active=active, opening=opening, rate=rate, history=tuple(history)
-            )
+            return UnilateralSolution(pressure, active, rate, tuple(history))
         if offenders < fewest:
             fewest, trials = offenders, _BLOCK_TRIALS
         else:
             trials -= 1
-        if trials > 0:
-            active = active ^ offending
-        else:
-            active = active.copy()
-            single = int(np.nonzero(offending)[0][-1])
-            active[single] = not active[single]
+        if trials <= 0:  # the last one alone
+            offending[: np.nonzero(offending)[0][-1]] = False
+        active = active ^ offending
     raise ConvergenceError(
-        f"unilateral contact of {count} cells: the contact set did not settle (offending cells listed)",
-        history,
+        f"unilateral contact of {count} cells: the contact set did not settle (offending cells listed)", history
     )

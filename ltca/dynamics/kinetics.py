@@ -275,17 +275,17 @@ def _discs_and_rollers(motion: Motion, masses: DriveMasses, angle: float) -> Ite
     bearing, pose, crank = motion.drive.crank_bearing, motion.pose, motion.unit(motion.crank)
     for number, (place, disc) in enumerate(zip(masses.places, masses.of(DISCS), strict=True)):
         own, at = pose.columns(number), np.array([angle])
-        start, stands = complex(place.race_centre(np.zeros(1))[0]), complex(place.race_centre(at)[0])
+        start, stands = complex(place.races(np.zeros(1)).middle[0]), complex(place.races(at).middle[0])
         middle = disc.place - start  # from the origin of the disc, which does not turn
         turns = motion.unit(int(own[DISC_ROTATION]))
-        moves = motion.displacement(int(own[X])) + complex(place.race_velocity(at)[0]) * crank
+        moves = motion.displacement(int(own[X])) + complex(place.races(at).velocity[0]) * crank
         row = moves + 1j * middle * turns
         yield from _rigid(motion, f"disc {number}", disc.mass, disc.about_own_axis, stands + middle, row, turns)
         yield from _leaning(motion, disc, number)
         mass = sum(solid.mass for solid in masses.of(ROLLERS) if solid.disc == number) / place.cranks
         radius = float(np.mean(place.roller_radii))
         orbit, cage = bearing.inner_race_radius + radius, float(place.cage_speed)
-        for bore, (stands_off, centre) in enumerate(zip(place.bore_centres, place.race_centres(at)[0], strict=True)):
+        for bore, (stands_off, centre) in enumerate(zip(place.bore_centres, place.races(at).centre[0], strict=True)):
             carried = _eccentric_moves(motion, masses, number, bore, angle)
             row = 0.5 * (moves + 1j * complex(stands_off) * turns + carried)
             yield from _rigid(motion, ROLLERS, mass, mass * orbit**2, complex(centre), row, cage * crank)
@@ -340,7 +340,7 @@ def _cranks(motion: Motion, masses: DriveMasses, angle: float) -> Iterator[Body]
         if disc < 0:
             yield from _shaft(motion, solid)
             continue
-        centre = complex(masses.places[disc].race_centres(np.array([angle]))[0, crank])
+        centre = complex(masses.places[disc].races(np.array([angle])).centre[0, crank])
         moves, turns = _eccentric_moves(motion, masses, disc, crank, angle), _crank_turns(motion, disc, crank)
         yield from _rigid(motion, CRANKS, solid.mass, solid.about_own_axis, centre, moves, turns)
 

@@ -53,7 +53,7 @@ def mass_rows(drive: Drive) -> list[tuple[str, str]]:
     disc, of = discs[0], " 0" if len(discs) > 1 else ""
     if not isnan(disc.mass):
         rows.append((f"volume of disc{of}", f"{disc.volume:.6g} mm³"))
-        off = abs(disc.place - complex(masses.places[0].race_centre(np.zeros(1))[0]))
+        off = abs(disc.place - complex(masses.places[0].races(np.zeros(1)).middle[0]))
         about = f"{disc.about_own_axis / INERTIA:.5g} kg·m²{f', {off:.4g} mm off' if off > 1e-9 else ''}"
         rows.append((f"inertia of disc{of} about its centre of mass", about))
     if not isnan(crank := masses.crank_inertia):

@@ -289,7 +289,7 @@ def _discs(discs: Sequence[Single]) -> Iterator[Solid]:
         radii = [*place.hole_radii.tolist(), *[single.bore_radius] * place.cranks]
         centres = [*place.hole_centres.tolist(), *place.bore_centres.tolist()]
         cut = sum(circle_section(radius, centre) for radius, centre in zip(radii, centres, strict=True))
-        (plane,), stands = disc.disc_planes, complex(place.race_centre(np.zeros(1))[0])
+        (plane,), stands = disc.disc_planes, complex(place.races(np.zeros(1)).middle[0])
         half, relief = 0.5 * disc.thickness, disc.lead_relief_length
         ends, shorts = (
             [-half, half],
@@ -358,7 +358,7 @@ def _rollers(discs: Sequence[Single]) -> Iterator[Solid]:
     """Rollers on their inner races at crank angle 0."""
     for number, (single, place) in enumerate(discs):
         ends = _about(single.disc.disc_planes[0], single.roller_length)
-        races, radii, rays = place.race_centres(np.zeros(1))[0], place.roller_radii, place.roller_rays(np.zeros(1))[0]
+        races, radii, rays = place.races(np.zeros(1)).centre[0], place.roller_radii, place.roller_rays(np.zeros(1))[0]
         centres = races[place.roller_cranks] + (single.crank_bearing.inner_race_radius + radii) * rays
         for roller, (centre, radius) in enumerate(zip(centres.tolist(), radii.tolist(), strict=True)):
             name, section = f"roller {roller} of disc {number}", circle_section(radius, centre)
@@ -375,7 +375,7 @@ def _cranks(drive: Drive, discs: Sequence[Single]) -> Iterator[Solid]:
     for disc, (single, place) in enumerate(discs):
         ends, radius = _about(single.disc.disc_planes[0], single.roller_length), single.crank_bearing.inner_race_radius
         taken.append(ends)
-        for crank, centre in enumerate(place.race_centres(np.zeros(1))[0].tolist()):
+        for crank, centre in enumerate(place.races(np.zeros(1)).centre[0].tolist()):
             name, section = f"eccentric {disc} of crank {crank}", circle_section(radius, centre)
             yield _solid(drive, name, CRANKS, material, section, ends, disc=disc, crank=crank)
     if support is None:

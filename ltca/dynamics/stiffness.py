@@ -58,7 +58,7 @@ def crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, respo
     """
     moment = model.crank_moments(crank_angle, pose, response.parts).sum(axis=1)
     for number, disc in enumerate(model.discs):
-        own, velocity = model.coordinates.columns(number), disc.geometry.placement.race_velocity(crank_angle)
+        own, velocity = model.coordinates.columns(number), disc.geometry.placement.races(crank_angle).velocity
         moment = moment + response.force[:, own[X]] * velocity.real + response.force[:, own[Y]] * velocity.imag
     ratio = model.discs[0].geometry.placement.reduction_ratio
     return np.asarray(moment + response.force[:, WHEEL_ANGLE] / ratio)

@@ -68,7 +68,7 @@ class MadeFlank:
 
     def departure(self, points: ComplexArray, near: FloatArray) -> FloatArray:
         """Return how far complex points, mm, lie outside the flank along its normal, mm; `near` is θ near each, rad."""
-        found = self.profile.nearest_parameter(points, near)
+        found = self.profile.nearest_point(points, near).parameter
         return self.profile.distance(points, found) + self.inward
 
     def start(self) -> FloatArray:

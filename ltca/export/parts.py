@@ -629,10 +629,10 @@ def _disc_and_bearings(single: Drive, place: Placement, name: str) -> Iterator[B
     """A disc on its eccentrics at φ_C = 0, the rollers on their inner races."""
     plane, bearing = single.disc.disc_planes[0], single.crank_bearing
     start = np.zeros(1)
-    disc = _moved(_disc_body(single, name, 0.0), complex(place.race_centre(start)[0]))
+    disc = _moved(_disc_body(single, name, 0.0), complex(place.races(start).middle[0]))
     yield replace(disc, of=name, bottom=plane - 0.5 * disc.top, top=plane + 0.5 * disc.top)
     low, high = plane - 0.5 * single.roller_length, plane + 0.5 * single.roller_length
-    races = place.race_centres(start)[0]
+    races = place.races(start).centre[0]
     for crank, centre in enumerate(races.tolist()):
         of = _numbered(f"inner race of {name}", crank, len(races))
         race = Circle(feature="inner-race", name=of, radius=bearing.inner_race_radius, centre=centre)

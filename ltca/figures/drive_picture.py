@@ -128,12 +128,12 @@ class _Position:
         self.crank_angle = float(full.crank_angle[position])
         pose, coordinates = full.pose[position], geometry.coordinates
         at = np.asarray(self.crank_angle)
-        self.disc = complex(place.race_centre(at)) + complex(pose[X], pose[Y])
+        self.disc = complex(place.races(at).middle) + complex(pose[X], pose[Y])
         self.turn = np.exp(1j * pose[DISC_ROTATION])
         yielding = np.zeros(place.cranks, dtype=complex)
         for crank in range(coordinates.cranks):
             yielding[crank] = complex(*pose[coordinates.crank(crank) :][:2])
-        self.cranks, self.races = place.crank_axes + yielding, place.race_centres(at) + yielding
+        self.cranks, self.races = place.crank_axes + yielding, place.races(at).centre + yielding
         self.bores = self.disc + self.turn * place.bore_centres
         wheel_turn = self.crank_angle / place.reduction_ratio + pose[WHEEL_ANGLE]
         moved = complex(*pose[coordinates.wheel_place]) if coordinates.wheel else 0.0

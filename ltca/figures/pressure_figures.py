@@ -63,7 +63,7 @@ def flank_arc_length(profile: FlankProfile) -> tuple[FloatArray, FloatArray]:
     """Return parameters θ over one tooth from a root (θ = 0) and the arc length of the flank from there, mm."""
     theta = np.linspace(0.0, 2.0 * np.pi / (profile.reduction_ratio - 1.0), ARC_POINTS)
     _, tangent, _ = profile.locus(theta)
-    speed = np.abs(tangent) * (1.0 - profile.offset * profile.locus_curvature(theta))
+    speed = np.abs(tangent) * (1.0 - profile.offset * profile.locus(theta).curvature)
     step = theta[1] - theta[0]
     return theta, np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * step)])
 

@@ -28,16 +28,8 @@ HALLEY_STEPS = 3
 class Boundary:
     """Stations of one closed boundary, uniform in a parameter of period 2π, rad.
 
-    Attributes
-    ----------
-    first, count : int
-        Index of the first station in the matrix, and number of stations.
-    offset : float
-        Parameter of the first station, rad.
-    clustering : float
-        a of the equation above; 0 for stations uniform in the parameter itself.
-    teeth : int
-        Number of teeth z about whose roots they cluster.
+    It has `count` stations from the number `first` of the matrix on, the first of them at the parameter `offset`, rad;
+    `clustering` is a of the equation above, 0 for stations uniform in the parameter itself, and `teeth` is z.
     """
 
     first: int
@@ -125,12 +117,12 @@ def _lagrange(
     weights = np.empty((*place.shape, LAGRANGE_POINTS))
     # The product over all other nodes is that over the nodes before times that over the nodes after.
     before = np.ones_like(local)
-    for one, node in enumerate(_NODES):
-        weights[..., one] = before * _SCALES[one]
+    for number, node in enumerate(_NODES):
+        weights[..., number] = before * _SCALES[number]
         before = before * (local - node)
     after = np.ones_like(local)
-    for one, node in reversed(list(enumerate(_NODES))):
-        weights[..., one] *= after
+    for number, node in reversed(list(enumerate(_NODES))):
+        weights[..., number] *= after
         after = after * (local - node)
     stations = np.mod(cell.astype(np.intp)[..., None] + _NODES, count[..., None]) + first[..., None]
     return stations, weights
@@ -147,10 +139,8 @@ def boundaries_of(numbers: NDArray[np.integer], teeth: int = 1, clustering: floa
     [(0, 3), (3, 2)]
     """
     counts = np.bincount(numbers)
-    firsts = np.cumsum(counts) - counts
-    flank, *walls = (
-        Boundary(first=first, count=count) for first, count in zip(firsts.tolist(), counts.tolist(), strict=True)
-    )
+    firsts = (np.cumsum(counts) - counts).tolist()
+    flank, *walls = (Boundary(first=first, count=count) for first, count in zip(firsts, counts.tolist(), strict=True))
     return (replace(flank, teeth=teeth, clustering=clustering), *walls)
 
 
@@ -162,16 +152,10 @@ def turned_boundaries(
     The part is turned by `steps` of ``2π/pattern``, of which bores and holes are whole numbers apart; `bores` is the number of
     bores among `boundaries`, and `flank_turn` the parameter of the disc's flank at which that of the part begins, rad.
     """
-    flank, *round_walls = boundaries
-    turn = 2.0 * np.pi * steps / pattern
-
-    def turned(walls: list[Boundary]) -> list[Boundary]:
-        moved = [replace(wall, offset=wall.offset + turn) for wall in walls]
-        first = -(steps * len(walls) // pattern) % max(1, len(walls))
-        return moved[first:] + moved[:first]
-
-    return (
-        replace(flank, offset=flank.offset + flank_turn),
-        *turned(round_walls[:bores]),
-        *turned(round_walls[bores:]),
-    )
+    flank, *walls = boundaries
+    found = [replace(flank, offset=flank.offset + flank_turn)]
+    for circle in (walls[:bores], walls[bores:]):
+        moved = [replace(wall, offset=wall.offset + 2.0 * np.pi * steps / pattern) for wall in circle]
+        first = -(steps * len(circle) // pattern) % max(1, len(circle))
+        found += moved[first:] + moved[:first]
+    return tuple(found)

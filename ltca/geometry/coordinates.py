@@ -37,24 +37,18 @@ def disc_displacement(pose: FloatArray) -> ComplexArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordinates:
-    """Members whose displacements make up a pose.
+    """Members whose displacements make up a pose: the number of discs, and what yields beside them.
 
     Attributes
     ----------
-    discs : int
-        Number of discs.
-    cranks : int
-        Cranks that yield; none where they are rigid.
-    wheel : bool
-        Whether the wheel's bearing yields.
+    discs, cranks : int
+        Number of discs, and of cranks that yield; none where these are rigid.
+    wheel, wheel_leans : bool
+        Whether the wheel's bearing yields, and whether it leans as well.
     ring : bool
         Whether a ring ties the tips of the shaft pins and floats, or is the far flange of a carrier on posts.
-    twists : bool
-        Whether cranks yield in torsion.
-    leans : bool
-        Whether discs lean, and cranks that yield in their planes.
-    wheel_leans : bool
-        Whether the wheel leans as well.
+    twists, leans : bool
+        Whether cranks yield in torsion, and whether discs lean, and cranks that yield in their planes.
     """
 
     discs: int = 1
@@ -69,18 +63,14 @@ class Coordinates:
     def of_drive(cls, drive: Drive) -> Coordinates:
         """Return the coordinates of a drive of any number of discs."""
         support = drive.crank.support
-        cranks, twists = (0, False) if support is None else (drive.crank.number, support.torsion)
         beam = None if drive.pin_shaft is None else drive.pin_shaft.beam
-        ring = drive.posts is not None or (beam is not None and beam.tip != "free")
-        wheel = drive.wheel_yields
-        discs, leans = drive.disc.number_of_discs, drive.contact.slices > 1
         return cls(
-            discs=discs,
-            cranks=cranks,
-            wheel=wheel,
-            ring=ring,
-            twists=twists,
-            leans=leans,
+            discs=drive.disc.number_of_discs,
+            cranks=0 if support is None else drive.crank.number,
+            wheel=drive.wheel_yields,
+            ring=drive.posts is not None or (beam is not None and beam.tip != "free"),
+            twists=support is not None and support.torsion,
+            leans=drive.contact.slices > 1,
             wheel_leans=drive.wheel_tilts,
         )
 
@@ -130,9 +120,8 @@ class Coordinates:
         """Return the places of x of a crank at every disc, followed by those of its lean there if discs lean; each has its y
         behind it.
         """
-        first = self.own * np.arange(self.discs)
-        places = [first + self.crank(crank)]
-        return np.concatenate([*places, first + self.crank_lean(crank)] if self.leans else places)
+        places = [self.crank(crank), self.crank_lean(crank)] if self.leans else [self.crank(crank)]
+        return (np.array(places)[:, None] + self.own * np.arange(self.discs)).ravel()
 
     @property
     def lean_place(self) -> slice:
@@ -174,6 +163,5 @@ class Coordinates:
         leans = self.own - 2 * (self.cranks + 1) * self.leans
         one = np.r_[X, DISC_ROTATION + 1 : self.crank(self.cranks) : 2, leans : self.own : 2]
         each = (self.own * np.arange(self.discs)[:, None] + one).ravel()
-        shared = [self.wheel_place.start] if self.wheel else []
-        shared += [self.wheel_lean_place.start] if self.wheel_leans else []
-        return np.append(each, [*shared, self.ring_place.start] if self.ring else shared).astype(np.intp)
+        shared = (self.wheel_place, self.wheel_lean_place, self.ring_place)
+        return np.append(each, [place.start for place in shared if place.stop > place.start]).astype(np.intp)

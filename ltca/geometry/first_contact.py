@@ -32,33 +32,11 @@ MAX_ITERATIONS = 60
 def first_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
 ) -> tuple[FloatArray, NDArray[np.intp]]:
-    """Return the rotation of disc or wheel about the nominal pose at which the first pin touches, and that pin.
+    """Return the rotation of disc or wheel about the nominal pose at which the first pin touches, rad, and that pin.
 
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        The drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    coordinate : {2, −1}
-        What turns: the disc about its centre (2) or the wheel (−1).
-    sense : {+1, −1}
-        Counter-clockwise or clockwise.
+    `crank_angle` is φ_C, rad, of the shape (positions,) of both answers; `coordinate` is what turns, the disc about its centre
+    (2) or the wheel (−1), and `sense` +1 counter-clockwise, −1 clockwise. ConvergenceError when no pin can touch in that sense.
 
-    Returns
-    -------
-    rotation : array, shape (positions,)
-        Signed rotation at first contact, rad.
-    pin : array of int, shape (positions,)
-        The pin that touches first.
-
-    Raises
-    ------
-    ConvergenceError
-        When no pin can touch in that sense.
-
-    Notes
-    -----
     Where pins press on the flank at every rotation, because of errors of single parts or an interference fit, the result is the
     rotation of least `interference` in both senses, so that backlash is zero.
     """
@@ -119,15 +97,6 @@ def _approaches(
     return -gap, -slope[..., coordinate]
 
 
-def _largest_approach(
-    geometry: ContactGeometry, angle: FloatArray, coordinate: int, rotation: FloatArray
-) -> tuple[FloatArray, FloatArray, NDArray[np.intp]]:
-    """Largest approach of all pins, its derivative by the rotation, and the pin."""
-    approach, slope = _approaches(geometry, angle, coordinate, rotation)
-    rows, pin = np.arange(angle.size), np.argmax(approach, axis=1)
-    return approach[rows, pin], slope[rows, pin], pin
-
-
 def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate: int) -> tuple[FloatArray, FloatArray]:
     """Return the rotation at which the largest approach is no interference, or the least one, and that approach.
 
@@ -168,13 +137,14 @@ def _farthest_free(
     level = np.maximum(approach.max(axis=1), 0.0)
     inside, outside = start, start + 2.0 * sense * _quarter_pitch(geometry)
     rate = sense * slope
-    travel = np.divide(-approach, rate, out=np.full(rate.shape, np.inf), where=(rate > 0.0) & (approach < 0.0)).min(
-        axis=1
-    )
+    closing = (rate > 0.0) & (approach < 0.0)
+    travel = np.divide(-approach, rate, out=np.full(rate.shape, np.inf), where=closing).min(axis=1)
     place = np.where(travel < np.abs(outside - start), start + sense * travel, 0.5 * (inside + outside))
-    going, stops = np.ones(angle.size, dtype=bool), np.zeros(angle.size, dtype=bool)
+    rows, going, stops = np.arange(angle.size), np.ones(angle.size, dtype=bool), np.zeros(angle.size, dtype=bool)
     for _ in range(MAX_ITERATIONS):
-        largest, turning, pin = _largest_approach(geometry, angle, coordinate, place)
+        approach, slope = _approaches(geometry, angle, coordinate, place)
+        pin = np.argmax(approach, axis=1)
+        largest, turning = approach[rows, pin], slope[rows, pin]
         over = largest > level
         inside, outside = np.where(over, inside, place), np.where(over, place, outside)
         newton = place - (largest - level) / np.where(turning == 0.0, np.nan, turning)

@@ -16,12 +16,11 @@ those of F.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ltca.arrays import BoolArray, ComplexArray, FloatArray, by_drive, has_rows, take_rows
+from ltca.arrays import ComplexArray, FloatArray, by_drive, has_rows, take_rows
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 from ltca.geometry.flank_deviation import ProfileDeviation
@@ -68,18 +67,8 @@ def trochoid_curvature(
 ) -> FloatArray:
     """Return the curvature of the path of the pin centres over the disc, 1/mm, positive where the disc is convex.
 
-    (1 + z K² − K (1 + z) c)/(R S³) with K = e z/R and S² = 1 + K² − 2 K c.
-
-    Parameters
-    ----------
-    radius : float or array
-        Generating circle R of the pins, mm.
-    eccentricity : float or array
-        e, mm.
-    pins : float or array
-        Number z of wheel pins.
-    cosine : float or array
-        c, of the angle of a pin from the direction of the eccentric.
+    It is (1 + z K² − K (1 + z) c)/(R S³) with K = e z/R and S² = 1 + K² − 2 K c, where R is the generating circle of the z pins
+    and e the eccentricity, mm, and c the cosine of the angle of a pin from the direction of the eccentric.
 
     Examples
     --------
@@ -92,18 +81,14 @@ def trochoid_curvature(
 
 
 class CurveFrame(NamedTuple):
-    """Moving frame of a curve over θ, with the speed |c′| and the rotation w dθ."""
+    """Moving frame of a curve over θ: point, mm, unit tangent, speed |c′| and the rotation w dθ, with derivatives of both."""
 
     point: ComplexArray
-    """mm."""
     tangent: ComplexArray
-    """Unit vector."""
     speed: FloatArray
     speed_slope: FloatArray
-    """mm/rad and its derivative, mm/rad²."""
     turning: FloatArray
     turning_slope: FloatArray
-    """w and its derivative, 1/rad."""
 
 
 class NearestPoint(NamedTuple):
@@ -121,18 +106,13 @@ class FlankProfile:
 
     Attributes
     ----------
-    generating_radius : float
-        R_C + ΔR_C, mm.
-    eccentricity : float
-        e of the generating motion, mm.
+    generating_radius, eccentricity, offset : float
+        R_C + ΔR_C, e of the generating motion and r_P + Δr_P, the distance of the flank from the trochoid, mm.
     reduction_ratio : float
         u = z_P/Δz, the frequency of the trochoid, a whole number.
-    offset : float
-        r_P + Δr_P, distance of the flank from the trochoid, mm.
-    turn : complex
-        Unit vector of the root at θ = 0 in the frame of the disc: how far the flank is turned against bore and holes.
-    centre : complex
-        Centre of the flank in the frame of the disc, whose origin is the centre of the bore, mm.
+    turn, centre : complex
+        Unit vector of the root at θ = 0 in the frame of the disc, by which the flank is turned against bore and holes, and centre
+        of the flank in that frame, whose origin is the centre of the bore, mm.
     deviation : ProfileDeviation or None
         Departure from the design along its normal.
     """
@@ -160,10 +140,7 @@ class FlankProfile:
         )
 
     def locus(self, parameter: FloatArray) -> CurvePoints:
-        """Return the design trochoid about its centre at θ, rad, and its first two derivatives by θ.
-
-        The trochoid of a flank that is turned against the holes is turned with it.
-        """
+        """Return the design trochoid about its centre at θ, rad, turned with the flank, and its first two derivatives by θ."""
         return self.at(unit(parameter))
 
     def at(self, direction: ComplexArray) -> CurvePoints:
@@ -171,14 +148,9 @@ class FlankProfile:
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
-        if self.is_turned:
+        if isinstance(self.turn, np.ndarray) or self.turn != 1.0:
             circle, crank = circle * self.turn, crank * self.turn
         return CurvePoints(circle - crank, 1j * (circle - u * crank), u * u * crank - circle)
-
-    @property
-    def is_turned(self) -> bool:
-        """Whether a flank is turned against its holes."""
-        return isinstance(self.turn, np.ndarray) or self.turn != 1.0
 
     @property
     def contact_offset(self) -> BatchScalar:
@@ -225,9 +197,7 @@ class FlankProfile:
             return parts * t
 
         return CurvePoints(
-            c + 1j * d * t + self.centre,
-            framed(along, slope),
-            framed(ds + 2.0 * slope * w - d * dw, bend - w * along),
+            c + 1j * d * t + self.centre, framed(along, slope), framed(ds + 2.0 * slope * w - d * dw, bend - w * along)
         )
 
     def normal(self, parameter: FloatArray) -> ComplexArray:
@@ -244,10 +214,6 @@ class FlankProfile:
         curve = self.contact_curve(unit(parameter))
         return np.asarray(curve.tangent * (1.0 - self.contact_offset * curve.curvature))
 
-    def locus_curvature(self, parameter: FloatArray) -> FloatArray:
-        """Return the curvature of the design trochoid at θ, 1/mm, positive where the disc is convex."""
-        return self.locus(parameter).curvature
-
     def curvature(self, parameter: FloatArray) -> FloatArray:
         """Return the curvature of the flank at θ, 1/mm, positive where the disc is convex.
 
@@ -260,10 +226,6 @@ class FlankProfile:
         """Return the effective radius of curvature of flank and pin: 1/ρ = 1/r_pin + κ_flank, mm."""
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
-    def nearest_parameter(self, point: ComplexArray, start: FloatArray) -> FloatArray:
-        """Return θ of the flank point whose normal passes through a point; see `nearest_point`."""
-        return self.nearest_point(point, start).parameter
-
     def nearest_point(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the flank point whose normal passes through a point (Eq. 61).
 
@@ -272,25 +234,11 @@ class FlankProfile:
         vanishes and Newton's method alone is slow or diverges. It finds the minimum next to the start; for points
         about a pin radius away from the flank that is the nearest one.
 
-        Parameters
-        ----------
-        point : array of complex
-            Points in the disc frame, mm.
-        start : array of float, same shape
-            First guess of θ, rad.
-
-        Returns
-        -------
-        NearestPoint
-            θ in rad, near the start (not reduced to one turn), and the contact curve there.
-
-        Raises
-        ------
-        ConvergenceError
-            When a point does not settle; the history holds the largest steps.
+        Points are those of the disc frame, mm; `start` is a first guess of θ, rad, near which the answer is: it is not reduced to
+        one turn. ConvergenceError when a point does not settle; the history holds the largest steps.
         """
         theta = start if start.shape == point.shape else np.broadcast_to(start, point.shape)
-        return self.nearer_side(point, self._settle(point, theta))
+        return self._nearer_side(point, self._settle(point, theta))
 
     def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
         """Find the foot next to every start; points that have converged are dropped as soon as they are the majority.
@@ -339,16 +287,17 @@ class FlankProfile:
                 return NearestPoint(theta, self.contact_curve(direction))
             going = moved > SETTLED
             if 2 * np.count_nonzero(going) < going.size:
-                every, settled = _with_places(every, left, theta), _with_places(settled, left, direction)
+                every, settled = every.copy(), settled.copy()
+                every.ravel()[left], settled.ravel()[left] = theta.ravel(), direction.ravel()
                 left = left[going.ravel()]
                 if left.size == 0:
                     return NearestPoint(every, self.contact_curve(settled))
                 flank = take_rows(flank, np.nonzero(going)[0])
-                theta, direction, point, last, slope_before = _picked(
-                    going, theta, direction, point, last, slope_before
-                )
+                # What is left goes on as one column.
+                theta, last, slope_before = (each[going][:, None] for each in (theta, last, slope_before))
+                direction, point = direction[going][:, None], point[going][:, None]
                 if iteration >= BRACKETED:
-                    low, high = _picked(going, low, high)
+                    low, high = low[going][:, None], high[going][:, None]
         raise ConvergenceError("contact points on the flank not found; largest step in rad", history)
 
     def _moved(self, curve: CurvePoints, step: FloatArray) -> CurvePoints:
@@ -361,18 +310,9 @@ class FlankProfile:
             point - step * (tangent - half * second), tangent - step * second + half * change, second - change
         )
 
-    def nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
-        """Return the nearest points, on the other side of the root where the flank is nearer there.
+    def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
+        """Return the nearest points from those on one side of the root, on the other where the flank is nearer there.
 
-        Parameters
-        ----------
-        point : array of complex
-            Points in the disc frame, mm.
-        found : NearestPoint
-            What is nearest on one side.
-
-        Notes
-        -----
         With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin farther from it than its radius
         of curvature there has a nearest point on either side.
         """
@@ -383,8 +323,7 @@ class FlankProfile:
         elif bend <= 0.0:
             return found
         sharp = (self.generating_radius - self.eccentricity * u) ** 2 / bend
-        theta = found.parameter
-        away = self._off_path(point, found)
+        theta, away = found.parameter, self._off_path(point, found)
         pitch = 2.0 * np.pi / (u - 1.0)
         root = pitch * np.round(theta / pitch)
         doubtful = (away > 0.3 * sharp) & (np.abs(theta - root) < 0.25 * pitch)
@@ -397,13 +336,10 @@ class FlankProfile:
         other = flank._settle(point, start)
         nearer = doubtful[rows] & (flank._off_path(point, other) < away[rows])
 
-        def chosen(here: NDArray[Any], there: NDArray[Any]) -> NDArray[Any]:
-            mixed = here.copy()
-            mixed[rows] = np.where(nearer, there, here[rows])
-            return mixed
-
-        curve = CurvePoints(*(chosen(here, there) for here, there in zip(found.curve, other.curve, strict=True)))
-        return NearestPoint(chosen(theta, other.parameter), curve)
+        mixed = NearestPoint(theta.copy(), CurvePoints(*(each.copy() for each in found.curve)))
+        for here, there in zip((mixed.parameter, *mixed.curve), (other.parameter, *other.curve), strict=True):
+            here[rows] = np.where(nearer, there, here[rows])
+        return mixed
 
     def _off_path(self, point: ComplexArray, found: NearestPoint) -> FloatArray:
         """Distance of points from the path of the centre of a pin that touches the flank, mm."""
@@ -423,15 +359,3 @@ class FlankProfile:
     def tip_radius(self) -> float:
         """Largest radius of the disc as designed, mm (at θ = π/z_C for Δz = 1)."""
         return float(self.generating_radius + self.eccentricity - self.offset)
-
-
-def _picked(places: BoolArray, *values: Any) -> Any:
-    """Values of arrays at some places, as columns."""
-    return [each[places][:, None] for each in values]
-
-
-def _with_places(values: NDArray[Any], places: NDArray[np.intp], fresh: NDArray[Any]) -> NDArray[Any]:
-    """Return a copy with the values at some places, counted through all axes, replaced."""
-    changed = values.copy()
-    changed.ravel()[places] = fresh.ravel()
-    return changed

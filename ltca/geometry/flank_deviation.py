@@ -22,14 +22,11 @@ class ProfileDeviation:
 
     Attributes
     ----------
-    orders : tuple of int
-        Waves around the disc.
-    amplitudes : array of complex, shape (orders,) or (positions, orders)
-        a − i b of each order, mm.
-    knots : array, shape (n + 1,)
-        Measured parameters and the first one a turn later, rad; empty without points.
-    pieces : array, shape (4, n)
-        Powers 3 … 0 of the distance from the knot before, mm.
+    orders, amplitudes : tuple of int, array of complex, shape (orders,) or (positions, orders)
+        Waves around the disc, and a − i b of each, mm.
+    knots, pieces : array, shape (n + 1,) and (4, n)
+        Measured parameters and the first one a turn later, rad, and powers 3 … 0 of the distance from the knot before, mm; empty
+        without points.
     """
 
     orders: tuple[int, ...]
@@ -42,9 +39,8 @@ class ProfileDeviation:
         """Return the deviation that a drive defines, None for the flank as designed."""
         if errors.is_zero:
             return None
-        count = len(errors.orders)
-        cosine = np.array(errors.cosine) if errors.cosine else np.zeros(count)
-        sine = np.array(errors.sine) if errors.sine else np.zeros(count)
+        none = np.zeros(len(errors.orders))
+        cosine, sine = (np.array(each) if each else none for each in (errors.cosine, errors.sine))
         knots, pieces = np.empty(0), np.empty((4, 0))
         if any(errors.deviation):
             from scipy.interpolate import CubicSpline  # 0.1 s to import, for measured flanks only

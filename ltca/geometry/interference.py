@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf, sqrt
+from typing import NamedTuple
 
+from ltca.drive.deviations import BoreErrors, PlacementErrors
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 
@@ -17,18 +18,12 @@ HOLES = "shaft pins and holes"
 """Name of the pair whose overlap depends on the errors of single pins as well (`ltca.geometry.first_contact.interference`)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Interference:
+class Interference(NamedTuple):
     """Overlaps of the drawn parts with the disc in its nominal place, mm; negative where there is play.
 
-    Attributes
-    ----------
-    pins : float
-        Largest of wheel pins and flank over the mesh, the wheel at its ideal angle.
-    rollers : float
-        Of a roller and both races together, clearance included.
-    holes : float
-        Of shaft pins and holes, clearance included: all on the same side, against the eccentricity; −∞ without them.
+    Those of wheel pins and flank are the largest over the mesh, the wheel at its ideal angle; of a roller and both races
+    together, clearance included; of shaft pins and holes, clearance included, all on the same side, against the eccentricity,
+    −∞ without them.
     """
 
     pins: float
@@ -73,10 +68,6 @@ def lost_play(cold: Drive, warm: Drive) -> list[str]:
     ]
 
 
-def _zero(value: float) -> float:
-    return 0.0 if abs(value) <= ROUNDING else value
-
-
 def drawn_plays(drive: Drive) -> dict[str, float]:
     """Return the least play of any disc by the parts that touch, discs in the middle of their eccentrics, mm.
 
@@ -85,34 +76,26 @@ def drawn_plays(drive: Drive) -> dict[str, float]:
     """
     overlaps = {FLANK: -inf, ROLLERS: -inf, HOLES: -inf}
     for single in single_discs(drive):
-        drawn, shaft = drawn_interference(single), single.pin_shaft
+        pins, rollers, holes = drawn_interference(single)
         error = single.crank.eccentricity_error
-        pins, holes = drawn.pins + abs(error), drawn.holes + error
-        rollers = drawn.rollers
-        for own in single.disc.of:  # bores that stand farther out than the cranks press all bearings alike
-            if own.bore_errors is not None and own.bore_errors.radial:
-                rollers += abs(sum(own.bore_errors.radial) / len(own.bore_errors.radial))
-        if shaft is not None and shaft.pin_errors.radial:
-            radial = shaft.pin_errors.radial
-            holes += abs(sum(radial) / len(radial))
-        for what, overlap in zip(overlaps, (pins, rollers, holes), strict=True):
+        rollers += sum(_mean_shift(own.bore_errors) for own in single.disc.of)
+        holes = holes + error + _mean_shift(None if single.pin_shaft is None else single.pin_shaft.pin_errors)
+        for what, overlap in zip(overlaps, (pins + abs(error), rollers, holes), strict=True):
             overlaps[what] = max(overlaps[what], overlap)
-    return {what: _zero(-overlap) for what, overlap in overlaps.items() if overlap > -inf}
+    return {what: 0.0 if abs(overlap) <= ROUNDING else -overlap for what, overlap in overlaps.items() if overlap > -inf}
+
+
+def _mean_shift(errors: BoreErrors | PlacementErrors | None) -> float:
+    """By how much the circle of some parts is larger or smaller than its radius: it presses all of them alike, mm."""
+    radial = () if errors is None else errors.radial
+    return abs(sum(radial) / len(radial)) if radial else 0.0
 
 
 def overlap_at_rest(drive: Drive, flank: float) -> tuple[float, str]:
     """Return the largest overlap of any pair of parts without load, mm, and the names of the two parts, empty where none overlap.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive, at its temperatures.
-    flank : float
-        Overlap of wheel pins and flank with the errors of single parts, mm.
-
-    Notes
-    -----
-    Pins in slots and sleeves on pins are no pairs of their own: a drive whose pins have no play there is refused, cold or warm.
+    `drive` is at its temperatures; `flank` is the overlap of wheel pins and flank with the errors of single parts, mm. Pins in
+    slots and sleeves on pins are no pairs of their own: a drive whose pins have no play there is refused, cold or warm.
     """
     overlaps = {what: -play for what, play in drawn_plays(drive).items() if what != FLANK} | {FLANK: flank}
     what = max(overlaps, key=lambda one: overlaps[one])
@@ -121,14 +104,15 @@ def overlap_at_rest(drive: Drive, flank: float) -> tuple[float, str]:
 
 def preload_warning(drive: Drive) -> str | None:
     """Return a warning of a drive whose parts overlap as drawn, None where none do; errors of single parts are left out."""
-    discs = [drawn_interference(single) for single in single_discs(drive)]
+    fields = (
+        ("wheel pins the flank", "disc.equidistant_offset"),
+        ("rollers the races", "crank_bearing.roller_radius"),
+        ("shaft pins the holes", "pin_shaft.hole_radius"),
+    )
+    largest = map(max, zip(*map(drawn_interference, single_discs(drive)), strict=True))
     named = [
         f"{what} by {overlap:.4g} mm ({field})"
-        for overlap, what, field in (
-            (max(found.pins for found in discs), "wheel pins the flank", "disc.equidistant_offset"),
-            (max(found.rollers for found in discs), "rollers the races", "crank_bearing.roller_radius"),
-            (max(found.holes for found in discs), "shaft pins the holes", "pin_shaft.hole_radius"),
-        )
+        for overlap, (what, field) in zip(largest, fields, strict=True)
         if overlap > ROUNDING
     ]
     if not named:

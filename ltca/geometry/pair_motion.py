@@ -26,19 +26,17 @@ def cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairMotion:
-    """Approach of pairs of one kind, with first and second derivatives by the pose.
+    """Approach δ of pairs of one kind, mm, with first and second derivatives by the pose.
 
-    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its
-    tangent, and terms of rotation made of s as well. They are only formed summed over the pairs, see `bend`.
+    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its tangent, and
+    terms of rotation made of s as well. They are only formed summed over the pairs, see `bend`.
 
     Attributes
     ----------
     approach : array, shape (positions, pairs)
         δ, mm.
-    gradient : array, shape (positions, pairs, coordinates)
-        ∂δ/∂q, in mm/mm and mm/rad.
-    along : array, shape (positions, pairs, coordinates)
-        Slip along the tangent by the pose, in mm/mm and mm/rad.
+    gradient, along : array, shape (positions, pairs, coordinates)
+        ∂δ/∂q and s, in mm/mm and mm/rad.
     bending : array, shape (positions, pairs)
         κ of the path of equal approach, 1/mm.
     """
@@ -51,34 +49,17 @@ class PairMotion:
     def bend(self, load: FloatArray) -> FloatArray:
         """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
 
-        Loads F are in N, shape (positions, pairs).
+        Loads F are in N, shape (positions, pairs). Pins in holes have κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2.
         """
-        return self._sum(load, self.bending, self.along)
-
-    @property
-    def curvature(self) -> FloatArray:
-        """∂²δ/∂q² of every pair, shape (positions, pairs, coordinates, coordinates)."""
-        one = np.ones((*self.bending.shape, 1))
-        return self._sum(one, self.bending[..., None], self.along[..., None, :])
-
-    @staticmethod
-    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins in holes: κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2."""
-        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
-        total[..., DISC_ROTATION, DISC_ROTATION] += (load * along[..., DISC_ROTATION]).sum(axis=-1)
+        total = np.matmul(self.along.swapaxes(-1, -2), (load * self.bending)[..., None] * self.along)
+        total[..., DISC_ROTATION, DISC_ROTATION] += (load * self.along[..., DISC_ROTATION]).sum(axis=-1)
         return np.asarray(total)
 
     def leaning(self, lean: ComplexArray, coordinates: Coordinates, turns: dict[int, ComplexArray]) -> PairTilt:
-        """Return the tilt of the pairs.
+        """Return the tilt of the pairs from the lean of the disc at each less that of the other part, rad.
 
-        Parameters
-        ----------
-        lean : array of complex, shape (positions, pairs)
-            Lean of the disc at the pair less that of the other part, rad.
-        coordinates : Coordinates
-            Of the pose.
-        turns : dict of int to array of complex, shape (positions, pairs)
-            How leans that stand on a body turn with it, by its angle's place in the pose.
+        `coordinates` are those of the pose; `turns` has how leans that stand on a body turn with it, by the place of its angle in
+        the pose. Arrays have the shape (positions, pairs).
         """
         normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
         across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
@@ -114,15 +95,7 @@ class PairMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairTilt:
-    """Tilt of pairs, by which their surfaces approach more the higher they are.
-
-    Attributes
-    ----------
-    tilt : array, shape (positions, pairs)
-        θ of the approach δ + θ z at the height z about the middle of the disc, rad.
-    gradient : array, shape (positions, pairs, coordinates)
-        ∂θ/∂q, 1/mm and 1.
-    """
+    """Tilt θ of pairs, rad, shape (positions, pairs), and ∂θ/∂q: the approach at a height z about the middle is δ + θ z."""
 
     tilt: FloatArray
     gradient: FloatArray
@@ -144,18 +117,10 @@ class PairTilt:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankMotion(PairMotion):
-    """Pairs of wheel pin and flank.
+    """Pairs of wheel pin and flank, shape (positions, z_P).
 
-    Attributes
-    ----------
-    parameter : array, shape (positions, z_P)
-        Place θ of the contact on the flank, rad.
-    effective_radius : array, shape (positions, z_P)
-        ρ of pin and flank there, mm.
-    point : array of complex, shape (positions, z_P)
-        Centre of the pin in the frame of the disc, mm.
-    turning : array of complex, shape (positions, z_P)
-        Change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
+    Beside what all pairs have it holds the place θ of the contact on the flank, rad, ρ of pin and flank there, mm, the centre of
+    the pin in the frame of the disc, mm, and the change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
     """
 
     parameter: FloatArray
@@ -175,11 +140,13 @@ class FlankMotion(PairMotion):
         of_disc = (coordinates.lean_place, 1.0)
         return (of_disc, (coordinates.wheel_lean_place, -1.0)) if coordinates.wheel_leans else (of_disc,)
 
-    @staticmethod
-    def _sum(load: FloatArray, bending: FloatArray, along: FloatArray) -> FloatArray:
-        """Pins on the flank: −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), the wheel angle being the last coordinate."""
-        total = np.matmul(along.swapaxes(-1, -2), (load * bending)[..., None] * along)
-        slip = np.matmul(load[..., None, :], along)[..., 0, :]
+    def bend(self, load: FloatArray) -> FloatArray:
+        """Return the same of pins on the flank, the wheel angle being the last coordinate.
+
+        They have −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ).
+        """
+        total = np.matmul(self.along.swapaxes(-1, -2), (load * self.bending)[..., None] * self.along)
+        slip = np.matmul(load[..., None, :], self.along)[..., 0, :]
         total[..., DISC_ROTATION, :] += slip
         total[..., :, DISC_ROTATION] += slip
         for turn in (DISC_ROTATION, WHEEL_ANGLE):
@@ -189,13 +156,7 @@ class FlankMotion(PairMotion):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KnownPins:
-    """Where wheel pins are at some pose, from which their contact parameters at others are guessed.
-
-    Attributes
-    ----------
-    point, turning : array, shape (positions, z_P)
-        Of `FlankMotion` there.
-    """
+    """Centres and turning of wheel pins at some pose (`FlankMotion`), from which contact parameters at others are guessed."""
 
     point: ComplexArray
     turning: ComplexArray
@@ -203,18 +164,18 @@ class KnownPins:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoreMotion:
-    """Bores of the disc against the centres of the inner races in them.
+    """Bores of the disc against the centres of the inner races in them, in the fixed frame, shape (positions, cranks).
 
     Attributes
     ----------
-    displacement : array of complex, shape (positions, cranks)
-        Bore centre from inner-race centre in the fixed frame, mm.
-    arm : array of complex, shape (positions, cranks)
-        Bore centre from the centre of the disc in the fixed frame, mm: zero for a central crank. The second derivative of
-        `displacement` by the rotation of the disc is −`arm`.
+    displacement : array of complex
+        Bore centre from inner-race centre, mm.
+    arm : array of complex
+        Bore centre from the centre of the disc, mm: zero for a central crank. The second derivative of `displacement` by the
+        rotation of the disc is −`arm`.
     gradient : array of complex, shape (positions, cranks, coordinates)
         ∂ displacement/∂q, in mm/mm and mm/rad.
-    lever : array of complex, shape (positions, cranks)
+    lever : array of complex
         Centre of the twisted inner race from the axis of its crank, mm: the second derivative by the twist. There is no other.
     twists : tuple of int
         Places of the twist of every crank in the pose; none where cranks do not twist.
@@ -225,15 +186,6 @@ class BoreMotion:
     gradient: ComplexArray
     lever: ComplexArray
     twists: tuple[int, ...] = ()
-
-    def relative_leans(self, coordinates: Coordinates) -> ComplexArray:
-        """Return how the lean of the disc less that of each crank follows the pose, shape (positions, cranks, coordinates)."""
-        found = np.zeros(self.gradient.shape, dtype=complex)
-        found[..., coordinates.lean_place] = (1.0, 1j)
-        for crank in range(coordinates.cranks):
-            place = coordinates.crank_lean(crank)
-            found[:, crank, place : place + 2] = (-1.0, -1j)
-        return found
 
     def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
         """Return values of the bores, shape (positions, cranks, …), as those of all their rollers, (positions, rollers, …)."""
@@ -265,3 +217,7 @@ class RollerRays:
         """
         # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
         return np.asarray(displaced.real + np.sqrt(np.maximum(self.bore_play**2 - displaced.imag**2, 0.0)))
+
+    def resting(self, bores: BoreMotion) -> ComplexArray:
+        """Return rollers that rest on the race from the bore centres, s n − d, mm: they overlap by its size less the play."""
+        return self.outermost * self.direction - bores.each(bores.displacement, self.direction.shape[1])

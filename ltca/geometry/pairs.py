@@ -8,25 +8,25 @@ together.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.drive.parts import Drive
-from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, RIGID, WHEEL_ANGLE, Coordinates, X, Y
+from ltca.geometry.coordinates import (
+    DISC_PLACE,
+    DISC_ROTATION,
+    RIGID,
+    WHEEL_ANGLE,
+    Coordinates,
+    X,
+    Y,
+    disc_displacement,
+)
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import ACROSS, lead_relief, profile_across
-from ltca.geometry.pair_motion import (
-    BoreMotion,
-    FlankMotion,
-    KnownPins,
-    PairMotion,
-    PairTilt,
-    RollerRays,
-    cross,
-    dot,
-)
+from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays, cross, dot
 from ltca.geometry.placement import Placement, Races
 from ltca.geometry.rotation import unit
 
@@ -36,16 +36,9 @@ _RIGID_MEMBERS = Coordinates()
 
 
 class DiscPlace(NamedTuple):
-    """Where a disc stands.
+    """Where a disc stands: inner races of its crank angles, its centre in the fixed frame, mm, and unit vector of its rotation.
 
-    Attributes
-    ----------
-    races : Races
-        Inner races of its crank angles.
-    centre : array of complex, shape (positions, 1)
-        Of the disc in the fixed frame, mm.
-    turn : array of complex, shape (positions, 1)
-        Unit vector of its rotation.
+    Centre and rotation have the shape (positions, 1).
     """
 
     races: Races
@@ -65,28 +58,24 @@ class ContactGeometry:
         Places of the parts, and the flank.
     coordinates : Coordinates
         Of a pose in which every member moves that can.
-    plane : float or array, shape (positions, 1)
-        Axial place of the middle of the disc, mm: a wheel that leans displaces its pins there.
-    half_width : float or array, shape (positions, 1)
-        Half the thickness of the disc, mm: what leans are measured by.
-    tip_share : float or array, shape (positions, 1)
-        Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips.
-    tip_slope : float or array, shape (positions, 1)
-        Lean of a shaft pin at the disc per displacement of its tip, 1/mm, where contacts have slices.
-    seat_share : float or array, shape (positions, 1)
+    plane, half_width : float
+        Axial place of the middle of the disc, where a wheel that leans displaces its pins, and half the thickness of the disc,
+        by which leans are measured, mm.
+    tip_share, tip_slope : float
+        Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips, and its lean by it, 1/mm,
+        where contacts have slices.
+    seat_share : float
         Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
         the crank stays straight; 0 where no flange moves.
-    wheel_gap : float or array, shape (positions, 1)
+    wheel_gap : float
         Distance by which the wheel is free in its main bearing, mm.
-    crank_gaps, crank_shares : array, shape (2,) or (positions, 2)
-        Distance by which a crank is free in each of its two bearings, mm, and displacement of the crank in the plane of the
-        disc by one there.
-    crank_slopes : array, shape (2,) or (positions, 2)
-        Lean of the crank by such a displacement, 1/mm.
-    flank_drop, roller_drop : array, shape (places,) or (positions, places)
+    crank_gaps, crank_shares, crank_slopes : array, shape (2,)
+        Distance by which a crank is free in each of its two bearings, mm, and displacement, mm, and lean, 1/mm, of the crank in
+        the plane of the disc by one there.
+    flank_drop, roller_drop : array, shape (places,)
         By how much wheel pin and flank, and roller and both races, fall short of straight ones, mm, at the places
         `ltca.geometry.length_profile.ACROSS` of contacts in slices; no places without.
-    roller_half_length : float or array, shape (positions, 1)
+    roller_half_length : float
         Half the length of the rollers, mm.
     """
 
@@ -109,39 +98,32 @@ class ContactGeometry:
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
         """Return the contact geometry of a drive of one disc."""
-        place, profile = Placement.of_drive(drive), FlankProfile.of_drive(drive)
         bearing, support = drive.main_bearing, drive.crank.support
-        gaps, shares, slopes, seat_share = np.zeros(2), np.zeros(2), np.zeros(2), 0.0
+        wide, long = drive.disc.thickness, drive.roller_length
+        own: dict[str, Any] = {}
         if drive.crank_supports is not None:
             near, far = drive.crank_supports
             share = (drive.disc.disc_planes[0] - near) / (far - near)
             if support is not None:
-                gaps, shares = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0)), np.array([1.0 - share, share])
-                slopes = np.array([-1.0, 1.0]) / (far - near)
+                own["crank_gaps"] = np.full(2, 0.5 * max(support.clearance or 0.0, 0.0))
+                own["crank_shares"] = np.array([1.0 - share, share])
+                own["crank_slopes"] = np.array([-1.0, 1.0]) / (far - near)
             if drive.posts is not None:
-                seat_share = share
-        wide, long, across = drive.disc.thickness, drive.roller_length, {}
+                own["seat_share"] = share
         if drive.contact.slices > 1:
             wheel, rollers = drive.pin_wheel, drive.crank_bearing
             of_pin = profile_across(wheel.pin_profile, wide, wheel.pin_radius)
-            of_roller = profile_across(rollers.roller_profile, long, rollers.roller_radius)
-            across = {
-                "flank_drop": of_pin + lead_relief(drive.disc, 0.5 * wide * ACROSS),
-                "roller_drop": 2.0 * of_roller,
-            }
+            own["flank_drop"] = of_pin + lead_relief(drive.disc, 0.5 * wide * ACROSS)
+            own["roller_drop"] = 2.0 * profile_across(rollers.roller_profile, long, rollers.roller_radius)
         return cls(
-            placement=place,
-            profile=profile,
+            placement=Placement.of_drive(drive),
+            profile=FlankProfile.of_drive(drive),
             coordinates=Coordinates.of_drive(drive),
             plane=drive.disc.disc_planes[0],
             half_width=0.5 * wide,
-            seat_share=seat_share,
             wheel_gap=0.0 if bearing is None else 0.5 * max(bearing.clearance or 0.0, 0.0),
-            crank_gaps=gaps,
-            crank_shares=shares,
-            crank_slopes=slopes,
             roller_half_length=0.5 * long,
-            **across,
+            **own,
         )
 
     @property
@@ -157,29 +139,20 @@ class ContactGeometry:
         leans between upright parts.
         """
         place = self.placement
-        leans = (
-            place.wheel_pin_leans, place.hole_leans, place.shaft_pin_leans, place.wheel_lean, place.crank_lean,
-        )  # fmt: skip
-        sloping = np.any(self.flank_drop != self.flank_drop[..., ::-1])
-        return self.coordinates.leans and bool(sloping or any(np.any(each) for each in leans))
+        sloping = self.flank_drop != self.flank_drop[..., ::-1]
+        leans = (place.wheel_pin_leans, place.hole_leans, place.shaft_pin_leans, place.wheel_lean, place.crank_lean)
+        return self.coordinates.leans and any(np.any(each) for each in (sloping, *leans))
 
     @property
     def tips_by_ring(self) -> ComplexArray:
         """Displacement of the tips of the shaft pins by x, y and rotation of the ring that ties them, shape (…, z_PS, 3)."""
         # At the zero of the planes, alike for all discs: inclined pins stand beside there at a disc.
-        places = self.placement.shaft_pin_centres - self.plane * self.placement.shaft_pin_leans
-        return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
+        return _moved_rigidly(self.placement.shaft_pin_centres - self.plane * self.placement.shaft_pin_leans)
 
     @property
     def seats_by_ring(self) -> ComplexArray:
         """Displacement of the bearings of the cranks in the far flange by its x, y and rotation, shape (…, cranks, 3)."""
-        places = self.placement.crank_axes - self.plane * np.asarray(self.placement.crank_lean)
-        return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)
-
-    @property
-    def cranks_by_ring(self) -> ComplexArray:
-        """Displacement of the axes of straight cranks at the disc by the far flange, shape (…, cranks, 3)."""
-        return np.asarray(np.asarray(self.seat_share)[..., None] * self.seats_by_ring)
+        return _moved_rigidly(self.placement.crank_axes - self.plane * np.asarray(self.placement.crank_lean))
 
     def moved_by_ring(self, pose: FloatArray) -> ComplexArray | None:
         """Return the displacement of the shaft pins at the disc by the ring, shape (positions, z_PS), mm; None without ring."""
@@ -197,9 +170,7 @@ class ContactGeometry:
 
     def nominal_parameter(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ of each pin's contact at the nominal pose, rad: (φ_C + 2πi)/z_P for Δz = 1 on a flank that is not turned."""
-        pins = np.angle(self.placement.wheel_pin_centres)
-        if self.profile.is_turned:
-            pins = pins - np.angle(self.profile.turn)
+        pins = np.angle(self.placement.wheel_pin_centres) - np.angle(self.profile.turn)
         return np.asarray(crank_angle)[:, None] / self.placement.reduction_ratio + pins
 
     def flank(
@@ -211,22 +182,11 @@ class ContactGeometry:
         known: KnownPins | None = None,
         at: DiscPlace | None = None,
     ) -> FlankMotion:
-        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89).
+        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89) at crank angles φ_C and poses q.
 
-        Parameters
-        ----------
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        pose : array, shape (positions, coordinates)
-            q.
-        start : array, shape (positions, z_P), optional
-            First guess of the contact parameters; the nominal ones by default.
-        shifts : array of complex, shape (positions, z_P), optional
-            Displacements of the pins in the turning wheel, mm.
-        known : KnownPins, optional
-            Where the pins were at the first guess, which is followed from there.
-        at : DiscPlace, optional
-            Where the disc stands, if it is known.
+        `start` is a first guess of the contact parameters, the nominal ones by default; where the pins were `known` there, it is
+        followed from that place. `shifts` are displacements of the pins in the turning wheel, mm; both have the shape (positions,
+        z_P). `at` is where the disc stands, if that is known.
         """
         place, coordinates, profile = self.placement, self.coordinates_of(pose), self.profile
         disc = at or self.disc_place(crank_angle, pose)
@@ -254,24 +214,19 @@ class ContactGeometry:
         # Distance = f(point(q)): its gradient is n·∂point, its Hessian n·∂²point + κ (t·∂point)(t·∂point), κ of the
         # parallel curve through the pin centre; ∂point = (−1, −i, −i arm, i pin) in the fixed frame.
         outward = normal * disc.turn
-        gradient, along = (np.zeros((*point.shape, coordinates.size)) for _ in range(2))
         inward = outward.conjugate()
         by_disc, by_wheel = arm * inward, centre * inward  # scalar and, negative, vector products
-        gradient[..., X], gradient[..., Y] = outward.real, outward.imag
-        gradient[..., DISC_ROTATION], gradient[..., WHEEL_ANGLE] = -by_disc.imag, by_wheel.imag
-        along[..., X], along[..., Y] = outward.imag, -outward.real
-        along[..., DISC_ROTATION], along[..., WHEEL_ANGLE] = -by_disc.real, by_wheel.real
+        moved = np.zeros((*point.shape, coordinates.size), dtype=complex)  # ∂δ/∂q and, imaginary, the slip
+        moved[..., X], moved[..., Y] = outward, -1j * outward
+        moved[..., DISC_ROTATION], moved[..., WHEEL_ANGLE] = -1j * by_disc.conjugate(), 1j * by_wheel.conjugate()
         if coordinates.wheel:
-            wheel = coordinates.wheel_place
-            gradient[..., wheel], along[..., wheel] = -gradient[..., DISC_PLACE], -along[..., DISC_PLACE]
+            moved[..., coordinates.wheel_place] = -moved[..., DISC_PLACE]
         if coordinates.wheel_leans:
-            lean, plane = coordinates.wheel_lean_place, np.asarray(self.plane)[..., None]
-            gradient[..., lean] = -plane * gradient[..., DISC_PLACE]
-            along[..., lean] = -plane * along[..., DISC_PLACE]
+            moved[..., coordinates.wheel_lean_place] = -np.asarray(self.plane)[..., None] * moved[..., DISC_PLACE]
         return FlankMotion(
             approach=place.wheel_pin_radii - place.wheel_pin_plays - offset - distance,
-            gradient=gradient,
-            along=along,
+            gradient=moved.real.copy(),
+            along=moved.imag.copy(),
             bending=curvature / spread,
             parameter=parameter,
             effective_radius=1.0 / (1.0 / place.wheel_pin_radii + flank_curvature),
@@ -297,15 +252,11 @@ class ContactGeometry:
     def disc_place(self, crank_angle: FloatArray, pose: FloatArray) -> DiscPlace:
         """Return where the disc stands (Eq. 46); arguments as for `flank`."""
         races = self.placement.races(crank_angle)
-        centre = (races.middle + pose[:, X] + 1j * pose[:, Y])[:, None]
+        centre = (races.middle + disc_displacement(pose))[:, None]
         return DiscPlace(races, centre, unit(pose[:, DISC_ROTATION, None]))
 
     def holes(
-        self,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        shifts: ComplexArray | None = None,
-        at: DiscPlace | None = None,
+        self, crank_angle: FloatArray, pose: FloatArray, shifts: ComplexArray | None = None, at: DiscPlace | None = None
     ) -> PairMotion:
         """Return the pairs of shaft pin and hole (Eq. 51, 59, 78–83, 88); arguments as for `flank`."""
         place = self.placement
@@ -320,15 +271,16 @@ class ContactGeometry:
             play = play + shifts
         distance = np.sqrt(play.real**2 + play.imag**2)
         direction = play / distance
-        gradient, along = (np.zeros((*distance.shape, coordinates.size)) for _ in range(2))
-        turned = arm * direction.conjugate()  # scalar and, negative, vector product
-        gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = -direction.real, -direction.imag, turned.imag
-        along[..., X], along[..., Y], along[..., DISC_ROTATION] = gradient[..., Y], direction.real, turned.real
+        moved = np.zeros((*distance.shape, coordinates.size), dtype=complex)  # ∂δ/∂q and, imaginary, the slip
+        moved[..., X], moved[..., Y] = -direction, 1j * direction
+        moved[..., DISC_ROTATION] = 1j * (arm * direction.conjugate()).conjugate()
         if by_ring is not None:
-            gradient[..., coordinates.ring_place] = dot(direction[..., None], by_ring)
-            along[..., coordinates.ring_place] = cross(by_ring, direction[..., None])
+            ahead = direction[..., None]
+            moved[..., coordinates.ring_place] = dot(ahead, by_ring) + 1j * cross(by_ring, ahead)
         approach = distance - (place.hole_radii - place.shaft_pin_radii + place.shaft_pin_plays)
-        return PairMotion(approach=approach, gradient=gradient, along=along, bending=1.0 / distance)
+        return PairMotion(
+            approach=approach, gradient=moved.real.copy(), along=moved.imag.copy(), bending=1.0 / distance
+        )
 
     def lean(self, pose: FloatArray) -> ComplexArray:
         """Return the lean of the disc, rad, shape (positions, 1)."""
@@ -381,23 +333,26 @@ class ContactGeometry:
 
         A roller that rests on the race takes whatever lean presses it least.
         """
-        count = rays.direction.shape[1]
-        arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
-        length = np.abs(arm)
+        coordinates, arm = self.coordinates_of(pose), rays.resting(bores)
+        count, length = arm.shape[1], np.abs(arm)
         normal = (arm / length)[..., None]
         lean = bores.each(self.journal_leans(pose) - self.lean(pose), count)[..., None]
-        by_lean = -bores.each(bores.relative_leans(self.coordinates_of(pose)), count)
+        # The lean of each crank less that of the disc, by the pose.
+        by_lean = np.zeros(bores.gradient.shape, dtype=complex)
+        by_lean[..., coordinates.lean_place] = (-1.0, -1j)
+        for crank in range(coordinates.cranks):
+            place = coordinates.crank_lean(crank)
+            by_lean[:, crank, place : place + 2] = (1.0, 1j)
         # The normal turns as the bore moves across it.
         turned = -dot(1j * normal, lean) * dot(1j * normal, bores.each(bores.gradient, count)) / length[..., None]
-        return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, by_lean) + turned)
+        return PairTilt(tilt=dot(normal, lean)[..., 0], gradient=dot(normal, bores.each(by_lean, count)) + turned)
 
     def bores(self, crank_angle: FloatArray, pose: FloatArray, at: DiscPlace | None = None) -> BoreMotion:
         """Return the displacements of the bores; arguments as for `flank`."""
         place, coordinates = self.placement, self.coordinates_of(pose)
         disc = at or self.disc_place(crank_angle, pose)
         races, arm = disc.races, place.bore_centres * disc.turn
-        moved = races.middle[:, None] - races.centre + arm
-        moved = moved + (pose[:, X] + 1j * pose[:, Y])[:, None]
+        moved = races.middle[:, None] - races.centre + arm + disc_displacement(pose)[:, None]
         gradient = np.zeros((*moved.shape, coordinates.size), dtype=complex)
         gradient[..., X], gradient[..., Y], gradient[..., DISC_ROTATION] = 1.0, 1j, 1j * arm
         for crank in range(coordinates.cranks):
@@ -405,14 +360,13 @@ class ContactGeometry:
             moved[:, crank] -= pose[:, x] + 1j * pose[:, x + 1]
             gradient[:, crank, x], gradient[:, crank, x + 1] = -1.0, -1j
         if coordinates.ring and not coordinates.cranks:  # rigid cranks go with their bearing in the far flange
-            by_ring = self.cranks_by_ring
+            by_ring = np.asarray(self.seat_share)[..., None] * self.seats_by_ring
             moved = moved - _moved(pose[:, coordinates.ring_place], by_ring)
             gradient[..., coordinates.ring_place] = -by_ring
         lever, twists = races.lever, coordinates.twist_places
         if twists:
-            straight = lever
-            lever = straight * unit(pose[:, twists])
-            moved -= lever - straight
+            lever = races.lever * unit(pose[:, twists])
+            moved -= lever - races.lever
             gradient[:, np.arange(len(twists)), twists] = -1j * lever
         return BoreMotion(displacement=moved, arm=arm, gradient=gradient, lever=lever, twists=twists)
 
@@ -435,3 +389,8 @@ def _vector(pose: FloatArray, place: slice) -> ComplexArray:
 def _moved(ring: FloatArray, by_ring: ComplexArray) -> ComplexArray:
     """Displacements at coordinates of the ring, shape (positions, 3), from those at unit coordinates."""
     return np.asarray(np.matmul(ring[:, None], by_ring.swapaxes(-1, -2))[:, 0])
+
+
+def _moved_rigidly(places: ComplexArray) -> ComplexArray:
+    """Displacement of places of a body by its x, y and rotation, shape (…, places, 3)."""
+    return np.stack((np.ones_like(places), np.full_like(places, 1j), 1j * places), axis=-1)

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
@@ -30,25 +29,19 @@ def _filled(values: Sequence[float], count: int) -> FloatArray:
 
 
 def _circle(radius: float, count: int, errors: PlacementErrors) -> ComplexArray:
-    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * _rays(count))
-
-
-@lru_cache(maxsize=64)
-def _rays(count: int) -> ComplexArray:
-    rays: ComplexArray = np.exp(2j * np.pi * np.arange(count) / count)
-    rays.setflags(write=False)
-    return rays
+    """Places of the parts of a circle, mm."""
+    rays = np.exp(2j * np.pi * np.arange(count) / count)
+    return np.asarray((radius + _filled(errors.radial, count) + 1j * _filled(errors.tangential, count)) * rays)
 
 
 def _of_shaft(drive: Drive) -> dict[str, Any]:
     """Pins of the pin shaft and their holes; empty arrays without pin shaft."""
     shaft, count = drive.pin_shaft, drive.number_of_holes
     if shaft is None:
-        nowhere, nothing = np.zeros(0, dtype=complex), np.zeros(0)
-        return {
-            "hole_centres": nowhere, "hole_radii": nothing, "shaft_pin_centres": nowhere, "shaft_pin_radii": nothing,
-            "shaft_pin_plays": nothing, "hole_leans": nowhere, "shaft_pin_leans": nowhere,
-        }  # fmt: skip
+        nowhere = dict.fromkeys(
+            ("hole_centres", "shaft_pin_centres", "hole_leans", "shaft_pin_leans"), np.zeros(0, complex)
+        )
+        return nowhere | dict.fromkeys(("hole_radii", "shaft_pin_radii", "shaft_pin_plays"), np.zeros(0))
     leans = shaft.inclination.lean + _leans(shaft.pin_errors, count)
     (plane,) = drive.disc.disc_planes
     return {
@@ -67,13 +60,6 @@ def _leans(errors: PlacementErrors, count: int) -> ComplexArray:
     return np.asarray(_filled(errors.inclination_y, count) - 1j * _filled(errors.inclination_x, count))
 
 
-def _wheel_pin_plays(drive: Drive) -> FloatArray:
-    """Play of each wheel pin in its slot, less half the error of its diameter, or of each sleeve on its pin."""
-    wheel, count = drive.pin_wheel, drive.pin_wheel.number_of_pins
-    own = 0.5 * _filled(wheel.pin_errors.diameter, count) if wheel.seat.kind == "slot" else np.zeros(count)
-    return np.asarray(wheel.seat_play - own)
-
-
 def _bore_centres(drive: Drive) -> ComplexArray:
     """Centres of the bores in the frame of the disc, errors of place included."""
     places, count = np.array(drive.crank.places), drive.crank.number
@@ -85,12 +71,9 @@ def _bore_centres(drive: Drive) -> ComplexArray:
 
 
 class Races(NamedTuple):
-    """Inner races at crank angles in the fixed frame.
+    """Inner races at crank angles: their centres, and those of their cages, from the crank axes and from the origin, mm (Eq. 47).
 
-    Attributes
-    ----------
-    lever, centre : array of complex, shape (…, cranks)
-        Centres of the races, and of their cages, from the crank axes and from the origin, mm (Eq. 47).
+    Both have the shape (…, cranks), in the fixed frame.
     """
 
     lever: ComplexArray
@@ -109,53 +92,17 @@ class Races(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placement:
-    """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives.
+    """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives, mm and rad.
 
-    Arrays that differ between the drives of a batch have the position on axis 0, single numbers the shape (positions, 1).
+    Arrays have one entry for each wheel pin, shaft pin or hole, roller (crank after crank) or crank. What differs between the
+    drives of a batch has the position on axis 0, single numbers the shape (positions, 1).
 
-    Attributes
-    ----------
-    wheel_pin_centres : array of complex, shape (z_P,)
-        In the wheel frame, from the wheel's axis, mm.
-    wheel_pin_radii : array of float, shape (z_P,)
-        Of the pins, or of their sleeves, mm.
-    wheel_pin_plays : array of float, shape (z_P,)
-        Of loose pins in their slots, of sleeves on their pins, in radius, mm. Without friction the forces on a free pin are
-        collinear: seen from the flank, a pin of radius r in a slot of radius r_s is a fixed one of radius r − (r_s − r).
-    hole_centres : array of complex, shape (z_PS,)
-        In the disc frame, mm.
-    hole_radii : array of float, shape (z_PS,)
-        With the pin-hole clearance, mm.
-    shaft_pin_centres : array of complex, shape (z_PS,)
-        In the fixed frame, mm.
-    shaft_pin_radii : array of float, shape (z_PS,)
-        mm.
-    shaft_pin_plays : array of float, shape (z_PS,)
-        Of sleeves on their pins, in radius, mm.
-    roller_cage_angles : array of float, shape (cranks · n_BR,)
-        Angle of each roller in its cage, crank after crank, rad.
-    roller_radii : array of float, shape (cranks · n_BR,)
-        mm.
-    inner_race_radius, bore_radius : float
-        r_i, and r_o with half the bearing clearance, mm.
-    eccentricity : array of float, shape (cranks,)
-        Actual e of each crank, mm.
-    eccentric_phase : array of float, shape (cranks,)
-        Actual phase of the eccentrics against the crank angle, rad.
-    crank_axes : array of complex, shape (cranks,)
-        Places of the crank axes in the fixed frame, mm.
-    bore_centres : array of complex, shape (cranks,)
-        In the disc frame, mm.
-    wheel_axis : complex
-        Place of the wheel's axis in the fixed frame, mm.
-    wheel_pin_leans, hole_leans, shaft_pin_leans : array of complex, shape (z_P,) or (z_PS,)
-        Lean of each part in the frame of wheel, disc or fixed, rad; that of the wheel's axis is apart.
-    wheel_lean, crank_lean : complex
-        Lean of the wheel's axis and of the cranks' in the fixed frame, rad.
-    cage_speed : float
-        Cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o.
-    reduction_ratio : float
-        u.
+    Wheel pins, their leans and holes are in the frames of wheel and disc, all else in the fixed frame; the lean of the wheel's
+    axis is not part of that of its pins. Radii are those of sleeves where there are some, of holes with the pin-hole clearance,
+    and `bore_radius` is r_o with half the bearing clearance. Plays, in radius, are those of loose pins in their slots and of
+    sleeves on their pins: without friction the forces on a free pin are collinear, and seen from the flank a pin of radius r in a
+    slot of radius r_s is a fixed one of radius r − (r_s − r). Eccentricity and phase are the actual ones of each crank, the cage
+    speed is the cage angle by the crank angle, r_i/(r_i + r_o) with the nominal r_o.
     """
 
     wheel_pin_centres: ComplexArray = by_drive(1)
@@ -188,7 +135,8 @@ class Placement:
         """Return the places of the parts of a drive of one disc, `ltca.drive.single_discs` (Eq. 49–50, 78)."""
         drive.require_warmed()
         wheel, bearing, crank = drive.pin_wheel, drive.crank_bearing, drive.crank
-        rollers = bearing.number_of_rollers
+        pins, rollers = wheel.number_of_pins, bearing.number_of_rollers
+        oversize = 0.5 * _filled(wheel.pin_errors.diameter, pins)
         pitch_radius = bearing.inner_race_radius + bearing.roller_radius
         pocket_error = _filled(bearing.roller_errors.tangential, rollers) / pitch_radius
         cage_angles = 2.0 * np.pi * np.arange(rollers) / rollers + pocket_error + drive.disc.phase
@@ -197,12 +145,11 @@ class Placement:
         errors = [entry.eccentricity_error for entry in eccentrics]
         # Inclined axes pass through the places of their parts at the zero of the planes.
         (plane,) = drive.disc.disc_planes
-        pin_leans = _leans(wheel.pin_errors, wheel.number_of_pins)
+        pin_leans = _leans(wheel.pin_errors, pins)
         return cls(
-            wheel_pin_centres=_circle(wheel.pin_circle_radius, wheel.number_of_pins, wheel.pin_errors)
-            + plane * pin_leans,
-            wheel_pin_radii=wheel.pin_radius + 0.5 * _filled(wheel.pin_errors.diameter, wheel.number_of_pins),
-            wheel_pin_plays=_wheel_pin_plays(drive),
+            wheel_pin_centres=_circle(wheel.pin_circle_radius, pins, wheel.pin_errors) + plane * pin_leans,
+            wheel_pin_radii=wheel.pin_radius + oversize,
+            wheel_pin_plays=wheel.seat_play - (oversize if wheel.seat.kind == "slot" else np.zeros(pins)),
             **_of_shaft(drive),
             roller_cage_angles=np.tile(cage_angles, crank.number),
             roller_radii=np.tile(roller_radii, crank.number),
@@ -260,28 +207,12 @@ class Placement:
 
     def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the unit vector of the disc's eccentricity, at the mean phase of its eccentrics, in the fixed frame."""
-        phase = self.eccentric_phase.mean(axis=-1)
-        return unit(np.asarray(crank_angle) + phase)
+        return unit(np.asarray(crank_angle) + self.eccentric_phase.mean(axis=-1))
 
     def races(self, crank_angle: FloatArray) -> Races:
         """Return the inner races at crank angles, rad, shape (…,) (Eq. 45, 47)."""
         lever = self.eccentricity * self.eccentric_directions(crank_angle)
         return Races(lever, self.crank_axes + lever)
-
-    def race_centres(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the centres of inner races and cages in the fixed frame, mm, shape (…, cranks) (Eq. 47)."""
-        return self.races(crank_angle).centre
-
-    def race_centre(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the nominal place of the disc in the fixed frame, mm: the centre of its inner race, the mean of several.
-
-        With one crank it is e·e^{i(φ_C + ζ)} from the crank axis (Eq. 47).
-        """
-        return self.races(crank_angle).middle
-
-    def race_velocity(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the derivative of `race_centre` by the crank angle, mm/rad, shape (…,)."""
-        return self.races(crank_angle).velocity
 
     def roller_angles(self, crank_angle: FloatArray) -> FloatArray:
         """Return θ_b,n of all rollers (Eq. 14), rad, shape (…, cranks · n_BR)."""
@@ -289,8 +220,8 @@ class Placement:
 
     def roller_rays(self, crank_angle: FloatArray) -> ComplexArray:
         """Return the unit vectors of the cage rays, e^{iθ_b,n}, in the fixed frame, shape (…, cranks · n_BR)."""
-        turn = unit(_flat(self.cage_speed) * np.asarray(crank_angle))
-        return np.asarray(turn[..., None] * unit(self.roller_cage_angles))
+        turn = unit(self.cage_speed * np.asarray(crank_angle)[..., None])
+        return np.asarray(turn * unit(self.roller_cage_angles))
 
     def wheel_rotation(self, crank_angle: FloatArray) -> FloatArray:
         """Return φ_P = φ_C/u, the ideal rotation of the wheel, rad."""
@@ -300,11 +231,6 @@ class Placement:
 def _mean(values: ComplexArray) -> ComplexArray:
     """Mean over the cranks."""
     return values[..., 0] if values.shape[-1] == 1 else np.asarray(values.mean(axis=-1))
-
-
-def _flat(value: complex | FloatArray | ComplexArray) -> complex | FloatArray | ComplexArray:
-    """A single number as it is, the column of a batch as an array of one axis."""
-    return value[:, 0] if isinstance(value, np.ndarray) else value
 
 
 def position_angles(positions: int) -> FloatArray:

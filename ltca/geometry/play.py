@@ -95,14 +95,10 @@ PlayBefore = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Play:
-    """Free play of the wheel at held crank angles.
+    """Free play of the wheel at held crank angles, shape (positions,).
 
-    Attributes
-    ----------
-    forward, backward : array, shape (positions,)
-        Wheel angles at which it stops, counter-clockwise and clockwise, rad; equal where it is not free.
-    preloaded : array of bool, shape (positions,)
-        Whether parts overlap in every pose; forward and backward then hold for the least overlap.
+    The wheel stops at the angles `forward` and `backward`, counter-clockwise and clockwise, rad, equal where it is not free.
+    Where it is `preloaded` parts overlap in every pose, and both hold for the least overlap.
     """
 
     forward: FloatArray
@@ -117,16 +113,9 @@ class Play:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnPlay:
-    """Free play of the wheel over one turn of the crank.
+    """Free play of the wheel over one turn of the crank, rad: the largest and the least, and φ_C of both.
 
-    Attributes
-    ----------
-    largest, least : float
-        rad.
-    crank_angle, crank_angle_of_least : float
-        φ_C of the largest and of the least, rad.
-    preloaded : float
-        Fraction of the positions where parts overlap in every pose.
+    `preloaded` is the fraction of the positions where parts overlap in every pose.
     """
 
     largest: float
@@ -214,21 +203,10 @@ def plays_over_a_turn(
 
 
 def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, overlap: FloatArray | float = 0.0) -> Play:
-    """Return the free play of the wheel with every clearance, the crank held.
+    """Return the free play of the wheel with every clearance at held crank angles φ_C, rad, shape (positions,).
 
-    Parameters
-    ----------
-    discs : sequence of ContactGeometry
-        Of every disc on the wheel: of one drive, or of as many positions.
-    crank_angle : array, shape (positions,)
-        Held φ_C, rad.
-    overlap : float or array, shape (positions,)
-        Allowed overlap of parts, mm.
-
-    Raises
-    ------
-    ConvergenceError
-        When nothing stops the wheel within half a pin pitch.
+    `discs` are those of one drive, or of as many positions; parts may overlap by `overlap`, mm, at each position or everywhere.
+    ConvergenceError when nothing stops the wheel within half a pin pitch.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
@@ -268,42 +246,11 @@ def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
     return np.asarray(pose[:, WHEEL_ANGLE].reshape(2, -1))
 
 
-def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
-    """Return the poses of one disc in which the wheel is turned as far as rigid bodies allow, shape (positions, 4).
-
-    Parameters
-    ----------
-    geometry : ContactGeometry
-        Of one disc.
-    crank_angle : array, shape (positions,)
-        Held φ_C, rad.
-    sense : {+1, −1}
-        Counter-clockwise or clockwise; the load of a crank driving counter-clockwise turns it clockwise.
-
-    Raises
-    ------
-    ConvergenceError
-        When parts interfere in every pose (a drive that cannot be put together without force), or nothing stops the
-        wheel within half a pin pitch.
-    """
-    angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
-    upright = replace(geometry, coordinates=Coordinates())
-    pose, left = _Programme([upright], angle).farthest(np.full(angle.size, float(sense)))
-    worst = int(np.argmax(left))
-    if left[worst] > CLOSED:
-        raise ConvergenceError(
-            f"parts interfere in every rigid pose at crank angle {angle[worst]:.6g} rad, by {left[worst]:.3g} mm where they "
-            "do so least; interference by positions in mm",
-            left.tolist(),
-        )
-    return pose
-
-
 def loose_poses(discs: Sequence[ContactGeometry], crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
     """Return the poses of all members with wheel and cranks loose in their bearings, the wheel turned as far as it goes.
 
-    Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position. Raises as
-    `rigid_poses` where nothing stops the wheel.
+    Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position, of the wheel.
+    ConvergenceError when nothing stops the wheel within half a pin pitch.
     """
     programme, whole = _Programme(discs, crank_angle), replace(discs[0].coordinates, discs=len(discs))
     pose, _ = programme.farthest(sense)
@@ -319,72 +266,67 @@ def _reach(geometry: ContactGeometry) -> FloatArray:
 
 
 class _Disc:
-    """The gaps of one disc at a batch of positions."""
+    """The gaps of one disc at a batch of positions.
+
+    Where it leans every pair has them at the heights where it may touch: at both ends, and where one that is crowned or relieved
+    is pressed furthest at its tilt. What rollers, pins and flanks fall short by is convex: of a straight line the ends are the
+    first.
+    """
 
     def __init__(self, geometry: ContactGeometry, angle: FloatArray, *, leans: bool) -> None:
         self.geometry, self.angle = geometry, angle
-        self.heights = _Heights(geometry) if leans else None
+        self.lines = [_shape(drop) for _, drop in _lines(geometry)] if leans else []
         self.parameter = geometry.flank(angle, np.zeros((angle.size, RIGID))).parameter
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Exact gaps of all pairs of the disc, mm, their derivatives by the pose, and the number of arcs."""
+        """Exact gaps of all pairs of the disc, mm, their derivatives by the pose, and the number of arcs, which come first."""
         geometry, angle = take_rows(self.geometry, rows), self.angle[rows]
         rays, bores = geometry.rollers(angle), geometry.bores(angle, pose)
         # A roller that rests on the inner race overlaps the bore by |s n − d| less the bore play.
-        count = rays.direction.shape[1]
-        arm = rays.outermost * rays.direction - bores.each(bores.displacement, count)
+        arm = rays.resting(bores)
         length = np.abs(arm)
-        moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, count)
+        moved = (arm / length).conjugate()[..., None] * bores.each(bores.gradient, arm.shape[1])
         holes = geometry.holes(angle, pose)
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned)
-        gaps = [rays.bore_play - length, -holes.approach, -flank.approach]
-        slopes = [moved.real, -holes.gradient, -flank.gradient]
-        if self.heights:
+        gaps = [(rays.bore_play - length, moved.real), *((-pair.approach, -pair.gradient) for pair in (holes, flank))]
+        if self.lines:
             tilts = (
                 geometry.roller_tilt(pose, bores, rays),
                 geometry.hole_tilt(pose, holes),
                 geometry.flank_tilt(angle, pose, flank),
             )
-            gaps, slopes = self.heights.along(geometry, gaps, slopes, tilts)
-        arcs = sum(each.shape[1] for each in gaps) - flank.approach.shape[1] * (2 if self.heights else 1)
-        return np.concatenate(gaps, axis=1), np.concatenate(slopes, axis=1), arcs
+            gaps = self._along_width(geometry, gaps, tilts)
+        arcs = sum(gap.shape[1] for gap, _ in gaps) - flank.approach.shape[1] * (2 if self.lines else 1)
+        return *_joined(gaps), arcs
 
-
-class _Heights:
-    """Heights at which pairs may touch: both ends, and where one that is crowned or relieved is pressed furthest at its tilt.
-
-    What rollers, pins and flanks fall short by is convex: of a straight line the ends are the first.
-    """
-
-    def __init__(self, geometry: ContactGeometry) -> None:
-        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
-        self.ends, self.bent = zip(*map(_shape, drops), strict=True)
-
-    def along(
-        self,
-        geometry: ContactGeometry,
-        gaps: Sequence[FloatArray],
-        slopes: Sequence[FloatArray],
-        tilts: Sequence[PairTilt],
-    ) -> tuple[list[FloatArray], list[FloatArray]]:
-        """Return gaps and their derivatives by the pose of rollers, shaft pins and wheel pins at these heights: all that are
-        convex and those of bent flanks, of which tangents are kept as well, before the ends of the flanks.
+    def _along_width(self, geometry: ContactGeometry, gaps: Sequence[_Gap], tilts: Sequence[PairTilt]) -> list[_Gap]:
+        """Gaps of rollers, shaft pins and wheel pins at their heights: all that are convex and those of bent flanks, of which
+        tangents are kept as well, before the ends of the flanks.
         """
-        halves = geometry.roller_half_length, geometry.half_width, geometry.half_width
-        drops = geometry.roller_drop, np.zeros(ACROSS.size), geometry.flank_drop
-        size = (gaps[0].shape[0], ACROSS.size)
+        size = (gaps[0][0].shape[0], ACROSS.size)
         ends, bent = list[list[_Gap]](), list[_Gap]()
-        for places, bends, half, drop, *pairs in zip(
-            self.ends, self.bent, halves, drops, gaps, slopes, tilts, strict=True
-        ):
-            gap, slope, tilt = pairs
+        for (places, bends), (half, drop), own, tilt in zip(self.lines, _lines(geometry), gaps, tilts, strict=True):
             z, short = np.broadcast_to(half * ACROSS, size), np.broadcast_to(drop, size)
-            ends.append([tilt.at(gap, slope, z[:, [place]], short[:, [place]]) for place in places])
+            ends.append([tilt.at(*own, z[:, [place]], short[:, [place]]) for place in places])
             if bends:
-                bent.append(tilt.at(gap, slope, *tilt.deepest(z, short)))
-        found = [*ends[0], *ends[1], *bent, *ends[2]]
-        return [gap for gap, _ in found], [slope for _, slope in found]
+                bent.append(tilt.at(*own, *tilt.deepest(z, short)))
+        return [*ends[0], *ends[1], *bent, *ends[2]]
+
+
+def _lines(geometry: ContactGeometry) -> tuple[tuple[float | FloatArray, FloatArray], ...]:
+    """Half the length of rollers, shaft pins and wheel pins, and by how much they fall short at `ACROSS`, mm."""
+    return (
+        (geometry.roller_half_length, geometry.roller_drop),
+        (geometry.half_width, np.zeros(ACROSS.size)),
+        (geometry.half_width, geometry.flank_drop),
+    )
+
+
+def _joined(gaps: Sequence[_Gap]) -> _Gap:
+    """Gaps and their derivatives of several kinds side by side."""
+    gap, slope = (np.concatenate(each, axis=1) for each in zip(*gaps, strict=True))
+    return gap, slope
 
 
 def _shape(drop: FloatArray) -> tuple[Rows, bool]:
@@ -440,18 +382,16 @@ class _Programme:
         each = np.r_[: DISC_ROTATION + 1, np.arange(coordinates.size)[coordinates.lean_place] if self.leans else []]
         found[:, each.astype(np.intp), self.own * number + np.arange(self.own)] = 1.0
         shares, slopes = (np.broadcast_to(values, (positions, 2)) for values in (disc.crank_shares, disc.crank_slopes))
-        part = self.radii / self.scale
+        part, both = (self.radii / self.scale)[..., None], np.arange(2)
         for crank in range(cranks):
             for bearing in (0, 1):
                 circle = 2 * crank + bearing
-                for axis in (0, 1):
-                    x, own = coordinates.crank(crank) + axis, self.circles + 2 * circle + axis
-                    found[:, x, own] = shares[:, bearing] * part[:, circle]
-                    if self.leans:
-                        found[:, coordinates.crank_lean(crank) + axis, own] = slopes[:, bearing] * part[:, circle]
+                own = self.circles + 2 * circle + both
+                found[:, coordinates.crank(crank) + both, own] = shares[:, bearing, None] * part[:, circle]
+                if self.leans:
+                    found[:, coordinates.crank_lean(crank) + both, own] = slopes[:, bearing, None] * part[:, circle]
         if wheel:
-            for axis in (0, 1):
-                found[:, coordinates.wheel_place.start + axis, self.size - 3 + axis] = part[:, -1]
+            found[:, coordinates.wheel_place.start + both, self.size - 3 + both] = part[:, -1]
         found[:, -1, -1] = 1.0
         return found
 
@@ -459,20 +399,16 @@ class _Programme:
         """Exact gaps of all discs and of the circles with the room, mm, their derivatives by scaled coordinates, and the number
         of arcs, which come first; then flanks and a polygon about each circle.
         """
-        arcs_gap, arcs_slope, gap, slope = [], [], [], []
-        lever = self.lever[rows, None]
+        arcs, others = list[_Gap](), list[_Gap]()
         for disc, each in zip(self.discs, self.maps, strict=True):
             own = each[rows]
-            found, slopes, arcs = disc.gaps(rows, np.matmul(own, pose[..., None])[..., 0])
-            slopes = np.matmul(slopes, own) / lever
-            arcs_gap.append(found[:, :arcs])
-            arcs_slope.append(slopes[:, :arcs])
-            gap.append(found[:, arcs:])
-            slope.append(slopes[:, arcs:])
+            gap, slope, curved = disc.gaps(rows, np.matmul(own, pose[..., None])[..., 0])
+            slope = np.matmul(slope, own) / self.lever[rows, None]
+            arcs.append((gap[:, :curved], slope[:, :curved]))
+            others.append((gap[:, curved:], slope[:, curved:]))
         place = pose[:, self.circles : -1].reshape(rows.size, -1, 2)
         distance, scale = np.hypot(place[..., 0], place[..., 1]), self.scale[rows]
         count = distance.shape[1]
-        arcs_gap.append(scale - distance)
         ahead = place / np.where(distance > 0.0, distance, 1.0)[..., None]
         circle = np.zeros((rows.size, count, self.size))
         corner = np.zeros((rows.size, count, SIDES, self.size))
@@ -481,12 +417,11 @@ class _Programme:
         for number in range(count):
             both = slice(self.circles + 2 * number, self.circles + 2 * number + 2)
             circle[:, number, both], corner[:, number, :, both] = -ahead[:, number], -sides
-        arcs_slope.append(circle)
-        gap.append((scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1))
-        slope.append(corner.reshape(rows.size, -1, self.size))
-        arcs = sum(each.shape[1] for each in arcs_gap)
-        joined = np.concatenate([*arcs_gap, *gap], axis=1) + self.room[rows]
-        return joined, np.concatenate([*arcs_slope, *slope], axis=1), arcs
+        arcs.append((scale - distance, circle))
+        room = (scale[..., None] - np.einsum("bcj,sj->bcs", place, sides)).reshape(rows.size, -1)
+        others.append((room, corner.reshape(rows.size, -1, self.size)))
+        gap, slope = _joined([*arcs, *others])
+        return gap + self.room[rows], slope, sum(each.shape[1] for each, _ in arcs)
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""
@@ -566,27 +501,9 @@ def _farthest(
 ) -> tuple[FloatArray, FloatArray, Rows]:
     """Turn the wheel as far as linear gaps allow, after the least overlap: normal · d ≤ room + t, |d| ≤ bound, t ≥ 0.
 
-    Parameters
-    ----------
-    normal : array, shape (rows, pairs, 4)
-        By scaled coordinates.
-    room : array, shape (rows, pairs)
-        mm.
-    sense : array, shape (rows,)
-        +1 or −1.
-    bound : array, shape (rows,)
-        Of every coordinate, mm.
-    start : array of int, shape (rows, 5), optional
-        Active constraints of a similar programme.
-
-    Returns
-    -------
-    step : array, shape (rows, 4)
-        d, mm.
-    overlap : array, shape (rows,)
-        t, mm.
-    active : array of int, shape (rows, 5)
-        The active constraints: pairs; numbers below zero are bounds.
+    Normals by scaled coordinates have the shape (rows, pairs, coordinates), rooms (rows, pairs), senses, +1 or −1, and bounds
+    (rows,); lengths are in mm. Returned are d, t and the active constraints, one more than coordinates in each row: numbers of
+    pairs, and below zero of bounds. `start` are those of a similar programme.
     """
     rows, pairs, size = normal.shape
     fixed = 2 * size + 1

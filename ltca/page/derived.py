@@ -45,7 +45,7 @@ def _properties(drive: Drive, plays: bool) -> Rows:
     profile, place = first.profile, first.placement
     parameter = np.linspace(0.0, 2.0 * np.pi / drive.reduction_ratio, 2001)
     curvature = profile.curvature(parameter)
-    locus = profile.locus_curvature(parameter)
+    locus = profile.locus(parameter).curvature
     e = float(place.mean_eccentricity[0])
     bearing = drive.crank_bearing
     roller_play = single.bore_radius - bearing.inner_race_radius - 2.0 * bearing.roller_radius

@@ -520,7 +520,7 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
     profile = FlankProfile.of_drive(drive)
     # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
     # is hollow at all.
-    designed = _hollow_radius(float(profile.locus_curvature(np.zeros(1))[0]), float(profile.offset))
+    designed = _hollow_radius(float(profile.locus(np.zeros(1)).curvature[0]), float(profile.offset))
     theta, actual = 0.0, designed
     if profile.deviation is not None:
         waves = max(

@@ -170,8 +170,7 @@ def _gaps(drive: Drive) -> dict[str, FloatArray]:
     gaps: dict[str, list[FloatArray]] = {FLANK: [], ROLLERS: [], HOLES: []}
     for disc in (ContactGeometry.of_drive(single) for single in single_discs(warm_drive(drive))):
         rays, bores = disc.rollers(angle), disc.bores(angle, pose)
-        arm = rays.outermost * rays.direction - bores.each(bores.displacement, rays.direction.shape[1])
         gaps[FLANK].append(-disc.flank(angle, pose).approach)
-        gaps[ROLLERS].append(rays.bore_play - np.abs(arm))
+        gaps[ROLLERS].append(rays.bore_play - np.abs(rays.resting(bores)))
         gaps[HOLES].append(-disc.holes(angle, pose).approach)
     return {pair: np.concatenate([each.ravel() for each in of_discs]) for pair, of_discs in gaps.items()}

@@ -26,10 +26,10 @@ from ltca.equilibrium.output_angle import play_before_cranks, wheel_angle_of_inp
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError, DriveError
-from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play, rigid_poses
+from ltca.geometry.play import CLOSED, free_play, loose_poses
 from ltca.reading.drive_file import build_drive
 from ltca.reading.physical_checks import is_sound
 from ltca.testing.ring_statics import ring_by_statics
@@ -191,9 +191,11 @@ def _teeth(random: Generator) -> dict[str, Any] | None:
     eccentricity = _round(wanted, _step(wanted))
     if eccentricity <= 0.0 or eccentricity * pins > 0.9 * circle:
         return None
-    path = FlankProfile(
-        generating_radius=circle, eccentricity=eccentricity, reduction_ratio=float(pins), offset=1.0
-    ).locus_curvature(np.linspace(0.0, 2.0 * np.pi / pins, 721))
+    path = (
+        FlankProfile(generating_radius=circle, eccentricity=eccentricity, reduction_ratio=float(pins), offset=1.0)
+        .locus(np.linspace(0.0, 2.0 * np.pi / pins, 721))
+        .curvature
+    )
     room = min(circle * float(np.sin(np.pi / pins)), 1.0 / float(np.max(path)))
     wanted = room * random.uniform(0.4, 0.75)
     pin_radius = _round(wanted, 0.25 if wanted > 1.0 else 0.05)
@@ -344,6 +346,26 @@ def light_limit(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) 
         further.append(found.fun * NANOMETRE)
     free = pose[:, WHEEL_ANGLE]
     return free + sense * np.array(further, dtype=float) / reach, free
+
+
+def rigid_poses(geometry: ContactGeometry, crank_angle: FloatArray, sense: int) -> FloatArray:
+    """Return the poses of one disc in which the wheel is turned as far as rigid bodies allow, shape (positions, 4).
+
+    Crank angles φ_C are held, rad, shape (positions,); `sense` is +1 or −1, counter-clockwise or clockwise: the load of a crank
+    driving counter-clockwise turns the wheel clockwise. ConvergenceError when parts interfere in every pose (a drive that cannot
+    be put together without force), or nothing stops the wheel within half a pin pitch.
+    """
+    upright, angle = replace(geometry, coordinates=Coordinates()), np.atleast_1d(np.asarray(crank_angle, dtype=float))
+    pose = loose_poses([upright], angle, np.full(angle.size, float(sense)))
+    left = np.maximum(pair_approaches(upright, angle, pose)[0].max(axis=1), 0.0)
+    worst = int(np.argmax(left))
+    if left[worst] > CLOSED:
+        raise ConvergenceError(
+            f"parts interfere in every rigid pose at crank angle {angle[worst]:.6g} rad, by {left[worst]:.3g} mm where they "
+            "do so least; interference by positions in mm",
+            left.tolist(),
+        )
+    return pose
 
 
 def pair_approaches(

@@ -57,9 +57,11 @@ def random_drive(point: Sequence[float]) -> tuple[Drive, float] | None:
     circle = _logarithmic(20.0, 300.0, next(u))
     eccentricity = _between(0.2, 0.95, next(u)) * circle / pins
     # The largest pin before neighbours overlap or the flank is undercut (convex side of the pin-centre path).
-    path = FlankProfile(
-        generating_radius=circle, eccentricity=eccentricity, reduction_ratio=float(pins), offset=1.0
-    ).locus_curvature(np.linspace(0.0, 2.0 * np.pi / pins, 2001))
+    path = (
+        FlankProfile(generating_radius=circle, eccentricity=eccentricity, reduction_ratio=float(pins), offset=1.0)
+        .locus(np.linspace(0.0, 2.0 * np.pi / pins, 2001))
+        .curvature
+    )
     room = min(circle * float(np.sin(np.pi / pins)), 1.0 / float(np.max(path)))
     pin_radius = room * _between(0.2, 0.85, next(u))
     shift = 0.01 * pin_radius * (2.0 * _often_zero(next(u)) - _often_zero(next(u)))

@@ -12,11 +12,12 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, first_contact
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play, rigid_poses
+from ltca.geometry.play import free_play
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
 from ltca.studies.tolerance_study import tolerance_study
+from ltca.testing.practical_drives import rigid_poses
 
 FEELER = 0.01  # mm: the pin moved inward by 10 µm
 

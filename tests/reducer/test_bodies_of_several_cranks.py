@@ -254,7 +254,7 @@ def test_every_disc_is_in_equilibrium_by_hand(small, derived):
         geometry = found.model.discs[number].geometry
         place, columns = geometry.placement, found.model.coordinates.columns(number)
         rotation = np.exp(1j * found.full.pose[:, columns[DISC_ROTATION], None])
-        centre = place.race_centre(ANGLES) + found.full.pose[:, columns[X]] + 1j * found.full.pose[:, columns[Y]]
+        centre = place.races(ANGLES).middle + found.full.pose[:, columns[X]] + 1j * found.full.pose[:, columns[Y]]
         theta = part.flank.parameter
         push = -part.pin_load * geometry.profile.normal(theta) * rotation
         points = geometry.profile.flank(theta) * rotation

@@ -41,7 +41,7 @@ def moment_of_pin_shaft(found):
     for number, (disc, part) in enumerate(zip(found.model.discs, found.full.response.parts, strict=True)):
         place, own = disc.geometry.placement, found.full.pose[:, found.model.coordinates.columns(number)]
         # Forces go through the centres of the holes as they stand, wherever pins have given way to.
-        centre = place.race_centre(found.full.crank_angle) + own[:, X] + 1j * own[:, Y]
+        centre = place.races(found.full.crank_angle).middle + own[:, X] + 1j * own[:, Y]
         holes = centre[:, None] + place.hole_centres * np.exp(1j * own[:, DISC_ROTATION, None])
         along = part.holes.gradient[..., DISC_PLACE]
         force = part.hole_load * (along[..., 0] + 1j * along[..., 1])

@@ -118,7 +118,7 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
         disc.pin_law, contact=contact, seat=None, play=np.zeros(1)
     )  # what a half-space counts of a sleeve's wall is off
     play = np.array([wheel.seat_play])
-    centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
+    centre = complex(place.races(ANGLES[:1]).middle[0]) + pose[X] + 1j * pose[Y]
     turn = np.exp(1j * pose[DISC_ROTATION])
     loaded = np.flatnonzero(part.pin_load[0] > 0.05 * part.pin_load[0].max())
     assert loaded.size > 5
@@ -130,7 +130,7 @@ def test_a_free_pin_by_its_own_two_unknowns(joint, name):
             """Sum of both forces on the free part, N, at its displacement from the seat's centre, µm."""
             at = home + 1e-3 * complex(*moved)
             in_disc = (at - centre) / turn
-            theta = profile.nearest_parameter(np.array([in_disc]), part.flank.parameter[0, [pin]])
+            theta = profile.nearest_point(np.array([in_disc]), part.flank.parameter[0, [pin]]).parameter
             gap = profile.distance(np.array([in_disc]), theta)[0] - wheel.pin_radius
             radius = profile.effective_radius(theta, np.array([wheel.pin_radius]))[0]
             flank = contact.load_and_stiffness(np.array([-gap]), radius)[0][0] * profile.normal(theta)[0] * turn
@@ -223,7 +223,7 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
     """The function that tells the force of one disc on a pin displaced by something, from exact gaps and the contact alone."""
     place, pose = model.geometry.placement, found.pose[0, coordinates.columns(number)]
     own = model.geometry.coordinates
-    centre = complex(place.race_centre(ANGLES[:1])[0]) + pose[X] + 1j * pose[Y]
+    centre = complex(place.races(ANGLES[:1]).middle[0]) + pose[X] + 1j * pose[Y]
     turn = np.exp(1j * pose[DISC_ROTATION])
     if on_wheel:
         profile, law = model.geometry.profile, model.pin_law
@@ -234,7 +234,7 @@ def force_of(model, single, part, found, number, pin, on_wheel, coordinates):
 
         def on_pin(shift):
             at = np.array([(home + shift - centre) / turn])
-            theta = profile.nearest_parameter(at, part.flank.parameter[0, [pin]])
+            theta = profile.nearest_point(at, part.flank.parameter[0, [pin]]).parameter
             gap = profile.distance(at, theta) - (place.wheel_pin_radii - place.wheel_pin_plays)[pin]
             one = replace(stiff, play=stiff.play[[pin]])
             radius = profile.effective_radius(theta, place.wheel_pin_radii[[pin]])

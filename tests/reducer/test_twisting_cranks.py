@@ -44,7 +44,7 @@ def test_a_shaft_twists_by_its_moments(rv, place):
     for number, (disc, part) in enumerate(zip(model.discs, found.response.parts, strict=True)):
         own = found.pose[:, coordinates.columns(number)]
         twist = own[:, coordinates.twist_places]
-        lever = disc.geometry.placement.race_centres(ANGLES) - disc.geometry.placement.crank_axes
+        lever = disc.geometry.placement.races(ANGLES).centre - disc.geometry.placement.crank_axes
         # what the disc does to its eccentric
         moments.append(-((lever * np.exp(1j * twist)).conjugate() * bearing_pushes(part.rollers, 3)).imag)
         twists.append(twist)

@@ -12,7 +12,7 @@ import pytest
 
 from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.width_pressure import estimate_along_width
@@ -56,9 +56,7 @@ def press(span, counts, separation, load):
 def test_load_moment_and_pressure(drop, tilt, load, span, slices):
     profile = None
     if drop:
-        profile = SummedProfile(
-            length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop)),)
-        )
+        profile = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop))
     kind = ContactKind(length=LENGTH, contact_modulus=MODULUS, generator=profile, symmetric=True)
     pressure, z, approach = press(span, (96, 384), lambda x, y: x**2 / (2.0 * RADIUS) + kind.relief(y) - tilt * y, load)
     cell = span / 96 * LENGTH / 384

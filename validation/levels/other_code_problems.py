@@ -30,7 +30,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.materials import elastic_alone
 from ltca.drive.parts import Drive, Material, contact_modulus
 from ltca.errors import CycloError
-from ltca.geometry.length_profile import LogarithmicRelief
+from ltca.geometry.length_profile import LOGARITHMIC, Relief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import ProfiledLineContactLaw
 from ltca.reading.drive_file import load_drive
@@ -144,7 +144,7 @@ class PressedRoller:
         Width of the other code's grid, some 3.4 half-widths, mm.
     cells : tuple of int
         Of that grid, across and along.
-    relief : LogarithmicRelief or None
+    relief : Relief or None
         Profile along the length; None for a cylinder.
     """
 
@@ -154,7 +154,7 @@ class PressedRoller:
     load: float
     span: float
     cells: tuple[int, int]
-    relief: LogarithmicRelief | None = None
+    relief: Relief | None = None
 
     @property
     def modulus(self) -> float:
@@ -185,7 +185,7 @@ ROLLERS = (
         load=40e3,
         span=1.626,
         cells=(96, 384),
-        relief=LogarithmicRelief(length=20.0, diameter=20.0),
+        relief=Relief(length=20.0, logarithm=LOGARITHMIC * 20.0),
     ),
 )
 

@@ -12,7 +12,7 @@ from ltca.analysis.life.equivalent_load import race_load
 from ltca.analysis.life.laminae import EvenLaminae, edge_factors
 from ltca.analysis.life.ratings import INNER_SHARE, OUTER_SHARE, RollerBearing
 from ltca.arrays import FloatArray
-from ltca.geometry.length_profile import LogarithmicRelief
+from ltca.geometry.length_profile import LOGARITHMIC, Relief
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import ContactLaw
 from ltca.reading.drive_file import load_drive
@@ -165,7 +165,7 @@ def life_at_the_rating(turns: int) -> float:
 
 def _iso_16281() -> list[Figure]:
     radial = _zone_mean(2.1)
-    factors, relief = edge_factors(31), LogarithmicRelief(length=20.0, diameter=20.0)
+    factors, relief = edge_factors(31), Relief(length=20.0, logarithm=LOGARITHMIC * 20.0)
     lives = [life_at_the_rating(turns) for turns in (3, 7)]
     ratings = _bearing(0.15).race_ratings(20_000.0)
     tabulated = "the standard's constants come from tabulated J of three digits: 0.3 %, against 4 % between the two"

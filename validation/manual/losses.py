@@ -138,7 +138,7 @@ def pitch_point_loss(positions: int) -> tuple[FloatArray, FloatArray, FloatArray
     turned = np.exp(1j * (angle / u + plain.pose[:, WHEEL_ANGLE]))[:, None]
     contact = place.wheel_axis + place.wheel_pin_centres * turned - place.wheel_pin_radii * outward
     # At e·u from the wheel's axis, e that of the disc as it stands.
-    disc = place.race_centre(angle) + plain.pose[:, 0] + 1j * plain.pose[:, 1]
+    disc = place.races(angle).middle + plain.pose[:, 0] + 1j * plain.pose[:, 1]
     pitch = place.wheel_axis + (disc - place.crank_axes[0])[:, None] * u
     lost = (size * plain.response.pin_load * np.abs(contact - pitch) / u).sum(axis=1)
     told = losses(model, [drive], found, torque).by_kind["pin"]

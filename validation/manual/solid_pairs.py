@@ -22,12 +22,12 @@ from fem.solid_contact.solved_pair import (
 )
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation
-from ltca.contact.free_end import free_end_factor
+from ltca.contact.free_end import guilbault_factor
 from ltca.contact.hertz import line_half_width, line_peak_pressure
 from ltca.contact.pressure_cells import PatchSolution, solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
 from ltca.drive.parts import Material, contact_modulus
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from validation.levels.other_code_problems import CODES, CROWNED_PAIRS
 from validation.levels.other_codes import compare_answers, stored_answer
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
@@ -193,7 +193,7 @@ INSIDE = (0.5, 1.0, 2.0, 4.0, 8.0)
 @cache
 def press_images(cells: int) -> PatchSolution:
     """Press the line on half-spaces with its images in both ends, so many cells over the half-width, at the same load."""
-    factor = free_end_factor(STEEL.poisson_ratio)
+    factor = guilbault_factor(STEEL.poisson_ratio)
 
     def images(approach: float) -> PatchSolution:
         return solve_cylinder_patch(LINE_LENGTH, LINE_RADIUS, MODULUS, approach, cells=cells, end_factor=factor)
@@ -253,9 +253,7 @@ CROWN_RADIUS, CROWN_LENGTH, CROWN_DROP, CROWN_LOAD, TILT = 10.0, 8.0, 0.01, 1500
 CROWN_SIZES = (2.8, 2.0, 1.4)
 NEAR, FAR_SIZE = 12.0, 4.0
 """Depth of the blocks, mm, and the size with which what is beyond them is found."""
-CROWN = SummedProfile(
-    length=CROWN_LENGTH, parts=(CircularCrown(length=CROWN_LENGTH, crown_radius=CROWN_LENGTH**2 / (8.0 * CROWN_DROP)),)
-)
+CROWN = Relief(length=CROWN_LENGTH, crown_radius=CROWN_LENGTH**2 / (8.0 * CROWN_DROP))
 
 
 @cache

@@ -10,7 +10,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import press_tilted
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
 from ltca.laws.width_pressure import estimate_along_width
@@ -50,8 +50,7 @@ def _kind(drop: float) -> ContactKind:
     """A line without or with a crown."""
     profile = None
     if drop:
-        crown = CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop * DEEP))
-        profile = SummedProfile(length=LENGTH, parts=(crown,))
+        profile = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop * DEEP))
     # Twelve cells over the half-width and half the length: the load errs by 5e-4, the moment by 1e-3 (20 cells).
     return ContactKind(length=LENGTH, contact_modulus=MODULUS, generator=profile, symmetric=True)
 

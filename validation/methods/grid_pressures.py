@@ -8,7 +8,7 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.contact.contact_kind import ContactKind, Separation
-from ltca.contact.tilted_grid import SAMPLES, TiltedPiece, recover_tilted
+from ltca.contact.tilted_grid import SAMPLES, TiltedPiece, press_tilted
 from ltca.laws.width_pressure import PatchAlongWidth, WidthPressures
 
 HEIGHTS = 33
@@ -47,10 +47,10 @@ def solve_along_width(
     for index in zip(*np.nonzero(delta + half * np.abs(theta) + metal > 0.0), strict=True):
         size = float(radius[index])
         separation, known = _parabola(size) if separations is None else separations(*index)
-        patch = recover_tilted(kind, separation, float(delta[index]), float(theta[index]), known)
-        if patch is None:
+        pressed = press_tilted(kind, separation, float(delta[index]), float(theta[index]), known)
+        if pressed is None:
             continue
-        along = PatchAlongWidth.of_patch(patch, kind)
+        along = PatchAlongWidth.of_patch(pressed.patch, kind)
         lines[index], pressures[index] = along.means(along.line_load, z), along.means(along.peak, z)
         largest[index], place[index] = along.largest()
         end_load[index] = along.means(along.line_load, np.array((-half, half)))

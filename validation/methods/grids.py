@@ -33,6 +33,7 @@ from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.sliced_contact import Exactness, SlicedContact, slice_heights, slice_means
 from ltca.laws.spring import SpringLaw
+from ltca.laws.width_pressure import PatchAlongWidth
 from validation.methods.grid_pressures import solve_along_width
 from validation.methods.pressed_grid import press, recover_patches
 
@@ -228,12 +229,13 @@ class GridLaw(ContactLaw):
                 continue
             self.kept.keep(keys[-1], found.pieces)
             values[(slice(None), *index)] = found[:6]
-            sums = np.concatenate(([0.0], np.cumsum(found.line_load * np.diff(found.edges))))
-            shares = np.diff(np.interp(edges, found.edges, sums))
+            along = PatchAlongWidth.of_patch(found.patch, self.kind)
+            sums = np.concatenate(([0.0], np.cumsum(along.line_load * np.diff(along.edges))))
+            shares = np.diff(np.interp(edges, along.edges, sums))
             # Of blended grids the one with the larger share gives the distribution of the load.
             slice_load[index] = shares * (found.load / shares.sum())
-            centres = 0.5 * (found.edges[1:] + found.edges[:-1])
-            points = np.interp(z, centres, found.line_load) * ((z > found.edges[0]) & (z < found.edges[-1]))
+            centres = 0.5 * (along.edges[1:] + along.edges[:-1])
+            points = np.interp(z, centres, along.line_load) * ((z > along.edges[0]) & (z < along.edges[-1]))
             # Points carry together the load of their slice: the bulge at an end lies between them.
             means = slice_means(points)
             even = slice_load[index] * (slices / length)

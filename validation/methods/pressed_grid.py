@@ -26,22 +26,21 @@ from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.fitted_grid import (
     BLEND,
     GridRung,
-    aligned_relief,
     expected_cells,
     find_patch_length,
     find_reach_place,
     find_width_place,
-    rung_grid,
     smooth_step,
+    unit_grid,
     unit_separations,
 )
 from ltca.contact.pressure_cells import PatchPressure
 from ltca.contact.unilateral import solve_unilateral_contact
-from ltca.geometry.length_profile import SummedProfile
+from ltca.geometry.length_profile import Relief
 
 
 def find_shares(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+    length: float, generator: Relief | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
     """Return the grids of a contact and the share of each in its load, for ρ and δ in mm and a contact line of `length`, mm.
 
@@ -66,7 +65,7 @@ def find_shares(
 
 
 def find_share_slopes(
-    length: float, generator: SummedProfile | None, effective_radius: float, approach: float
+    length: float, generator: Relief | None, effective_radius: float, approach: float
 ) -> dict[GridRung, float]:
     """Return the derivatives of the shares by the approach, 1/mm, for the arguments of `find_shares`.
 
@@ -149,7 +148,7 @@ def press(kind: ContactKind, separation: Separation, approach: float, start: Seq
     for rung, share in shares.items():
         piece = _settle(kind, rung, separation, approach, start)
         length = find_patch_length(kind.length, rung.reach_rung)
-        scale = kind.contact_modulus * length * rung_grid(kind, rung).images / np.pi
+        scale = kind.contact_modulus * length * unit_grid(rung, kind.cells, kind.symmetric).images / np.pi
         taken = float(piece.load_taken[: separation.weights.size] @ separation.weights)
         own = scale * length * (approach / length * piece.load_rate - taken)
         load += share * own
@@ -168,7 +167,7 @@ def recover_patches(
         piece = _settle(kind, rung, separation, approach, start)
         closing = approach / find_patch_length(kind.length, rung.reach_rung)
         pressure = np.maximum(closing * piece.rate - piece.taken[:, : weights.size] @ weights, 0.0)
-        grid = rung_grid(kind, rung)
+        grid = unit_grid(rung, kind.cells, kind.symmetric)
         scaled = grid.scaled(find_patch_length(kind.length, rung.reach_rung))
         patch = PatchPressure(grid=scaled, pressure=kind.contact_modulus * pressure.reshape(grid.shape))
         patches.append((share, patch))
@@ -181,7 +180,7 @@ def _settle(
     """Return the piece of one grid that holds at an approach: one of `start` if it does, otherwise solved from it."""
     length = find_patch_length(kind.length, rung.reach_rung)
     weights, closing = separation.weights, approach / length
-    grid = rung_grid(kind, rung)
+    grid = unit_grid(rung, kind.cells, kind.symmetric)
     areas = np.pi * grid.areas.ravel()
     active = None
     for piece in start:
@@ -195,7 +194,7 @@ def _settle(
         # Grids are scaled with the half-width, so neighbours on the ladder have nearly the same contact cells.
         near = [piece for piece in start if abs(piece.grid.rung - rung.rung) <= 1]
         active = near[0].active if near else expected_cells(kind, rung, separation.effective_radius, approach).ravel()
-    units = unit_separations(grid, separation, length, aligned_relief(kind))
+    units = unit_separations(grid, separation, length, kind.aligned_relief)
     influence = grid.influence
     found = solve_unilateral_contact(
         influence,

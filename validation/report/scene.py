@@ -39,7 +39,7 @@ def position_scene(compared: ComparedPosition) -> dict[str, Any]:
         for number in _loaded(list(answers.values()), kind)
     ]
     full, place = compared.full.answer, ContactGeometry.of_drive(compared.drive).placement
-    races = place.race_centres(np.array([compared.full.crank_angle]))[0]
+    races = place.races(np.array([compared.full.crank_angle])).centre[0]
     return {
         "case": compared.full.case,
         "angle": rounded(compared.full.crank_angle),
@@ -64,7 +64,7 @@ def _disc_centre(compared: ComparedPosition) -> complex:
     angle, answer = compared.full.crank_angle, compared.full.answer
     place = ContactGeometry.of_drive(compared.drive).placement
     shift = complex(answer.disc_radial, answer.disc_tangential) * place.eccentric_direction(np.array([angle]))[0]
-    return complex(place.race_centre(np.array([angle]))[0] + shift)
+    return complex(place.races(np.array([angle])).middle[0] + shift)
 
 
 def _places(compared: ComparedPosition) -> dict[Kind, tuple[ComplexArray, FloatArray, ComplexArray]]:
@@ -72,11 +72,11 @@ def _places(compared: ComparedPosition) -> dict[Kind, tuple[ComplexArray, FloatA
     geometry, answer = ContactGeometry.of_drive(compared.drive), compared.full.answer
     place, angle = geometry.placement, np.array([compared.full.crank_angle])
     disc, turn = _disc_centre(compared), np.exp(1j * answer.disc_rotation)
-    shift = disc - complex(place.race_centre(angle)[0])
+    shift = disc - complex(place.races(angle).middle[0])
     pose = np.array([[shift.real, shift.imag, answer.disc_rotation, answer.wheel_angle]])
     flank = geometry.flank(angle, pose)
     rays, cranks = geometry.rollers(angle).direction[0], place.roller_cranks
-    roller_centres = place.race_centres(angle)[0][cranks] + (place.inner_race_radius + place.roller_radii) * rays
+    roller_centres = place.races(angle).centre[0][cranks] + (place.inner_race_radius + place.roller_radii) * rays
     pins = place.wheel_pin_centres * np.exp(1j * (place.wheel_rotation(angle)[0] + answer.wheel_angle))
     play = place.shaft_pin_centres - (disc + turn * place.hole_centres)
     outward = roller_centres - (disc + turn * place.bore_centres)[cranks]

@@ -30,7 +30,7 @@ def _curvatures(single: Drive) -> tuple[float, float]:
     """Of the flank where it is most hollow, and of the path of the pins' centres where it is sharpest, 1/mm."""
     profile = FlankProfile.of_drive(single)
     parameter = np.linspace(0.0, 2.0 * pi / single.reduction_ratio, SAMPLES)
-    return float(profile.curvature(parameter).min()), float(profile.locus_curvature(parameter).max())
+    return float(profile.curvature(parameter).min()), float(profile.locus(parameter).curvature.max())
 
 
 def roller_gap(drive: Drive) -> float:

@@ -50,7 +50,7 @@ class Slip:
         flank[..., WHEEL_ANGLE] -= nearer
         holes[..., DISC_ROTATION] += place.hole_radii
         by_pose = np.concatenate((flank, holes), axis=1)
-        centre, rate = place.race_velocity(crank_angle), np.zeros(pose.shape)
+        centre, rate = place.races(crank_angle).velocity, np.zeros(pose.shape)
         for x in geometry.coordinates_of(pose).displacements:
             rate[:, x], rate[:, x + 1] = -pose[:, x + 1], pose[:, x]
         rate[:, X] += centre.real

@@ -67,7 +67,7 @@ def _feet(profile: FlankProfile, lobes: int, measured: MeasuredPoints, bound: fl
     # Half a step of the table may lie between a point and its foot.
     _require_near(away - 0.6 * float(np.max(np.abs(np.diff(known)))), bound, known, measured)
     try:
-        found = profile.nearest_parameter(points, table[nearest])
+        found = profile.nearest_point(points, table[nearest]).parameter
     except ConvergenceError as error:
         raise DriveError(
             ["points have no place on the flank: they lie beyond its centres of curvature"], measured.source

@@ -57,7 +57,7 @@ def test_tangential_bearing_force_is_that_of_energy(drive: Drive) -> None:
 def test_contact_places_lie_on_both_bodies(drive: Drive) -> None:
     contacts = expect_contacts(drive, 0.7)
     placement = Placement.of_drive(drive)
-    centre = placement.race_centre(np.array(0.7)) + contacts.disc_x + 1j * contacts.disc_y
+    centre = placement.races(np.array(0.7)).middle + contacts.disc_x + 1j * contacts.disc_y
     turn = 0.7 / placement.reduction_ratio + contacts.wheel_angle
     pins = placement.wheel_pin_centres * np.exp(1j * turn)
     flank = centre + contacts.flank_points * np.exp(1j * contacts.disc_rotation)

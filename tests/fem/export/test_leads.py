@@ -45,7 +45,7 @@ def departures(drive, places, inward=0.0):
     """How far points, lower face at z = 0, lie outside the flank, mm."""
     single = single_discs(drive)[0]
     flank, points = FlankProfile.of_drive(single), places[:, 0] + 1j * places[:, 1]
-    foot = flank.nearest_parameter(points, np.angle((points - flank.centre) / flank.turn))
+    foot = flank.nearest_point(points, np.angle((points - flank.centre) / flank.turn)).parameter
     return flank.distance(points, foot) + inward + short_of(single.disc, places[:, 2] - 0.5 * single.disc.thickness)
 
 
@@ -175,7 +175,7 @@ def test_a_lead_that_folds_the_flank_is_refused():
     """A flank close to undercut has sharp places; it was told as a compensation that nobody gave."""
     drive = drive_with({"disc.lead_crown_drop": 0.45})
     path = FlankProfile.of_drive(drive)
-    sharpest = 1.0 / np.max(path.locus_curvature(np.linspace(0.0, 2.0 * np.pi, 20_001)))
+    sharpest = 1.0 / np.max(path.locus(np.linspace(0.0, 2.0 * np.pi, 20_001)).curvature)
     offset = float(sharpest - drive.pin_wheel.pin_radius - 0.3)
     with pytest.raises(
         DriveError, match=r"^disc\.lead_crown_drop = 0\.45 mm .*: must be less than 0\.15\d* mm in size"

@@ -74,7 +74,7 @@ def test_a_disc_read_back(kinds_of_drives, tmp_path, kind, disc, inward):
     assert volume == pytest.approx(body.section * drive.disc.thickness, rel=SAME_SECTION)
     flank = FlankProfile.of_drive(single_discs(drive)[disc])
     points = line[:, 0] + 1j * line[:, 1]
-    foot = flank.nearest_parameter(points, np.angle((points - flank.centre) / flank.turn))
+    foot = flank.nearest_point(points, np.angle((points - flank.centre) / flank.turn)).parameter
     assert np.max(np.abs(flank.distance(points, foot) + inward)) < MICRON
 
 

@@ -10,12 +10,12 @@ from fem.solid_contact.pair_files import label_pair, summarise_pair, tabulate_pa
 from fem.solid_contact.pair_shapes import PAIRS, SolidPair
 from fem.solid_contact.solved_pair import PairLoad, PairMeshes, grade_heights, solve_pair
 from ltca.contact.contact_kind import ContactKind, Separation
-from ltca.contact.free_end import free_end_factor
+from ltca.contact.free_end import guilbault_factor
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.contact.tilted_grid import press_tilted
 from ltca.drive.parts import Material, contact_modulus
 from ltca.errors import DriveError
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from validation.methods.grid_pressures import solve_along_width
@@ -134,7 +134,7 @@ def test_energy_gaps_and_files_of_a_pair(roller):
 
 
 LENGTH, RADIUS, DROP, LOAD, TILT = 8.0, 10.0, 0.01, 1500.0, 3e-4
-CROWN = SummedProfile(length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * DROP)),))
+CROWN = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * DROP))
 
 
 def half_space(tilt):
@@ -194,7 +194,7 @@ def test_images_in_free_ends_say_what_solid_bodies_do():
     half_width = np.sqrt(4.0 * load / length * radius / (np.pi * MODULUS))
 
     def images(approach):
-        factor = free_end_factor(STEEL.poisson_ratio)
+        factor = guilbault_factor(STEEL.poisson_ratio)
         return solve_cylinder_patch(length, radius, MODULUS, approach, cells=16, end_factor=factor)
 
     mirrored = images(brentq(lambda each: images(each).load - load, 3e-3, 2e-2, xtol=1e-7))

@@ -94,7 +94,7 @@ def test_true_separation_of_the_flank():
         np.testing.assert_allclose(even[2:], 0.5 * curvature * x[2:] ** 2, rtol=1e-3)
         normal = complex(profile.normal(np.array(theta)))
         points = complex(profile.flank(np.array(theta))) + (1j * x - h) * normal
-        near = profile.nearest_parameter(points, np.full(4, theta))
+        near = profile.nearest_point(points, np.full(4, theta)).parameter
         np.testing.assert_allclose(profile.distance(points, near), 0.0, atol=1e-12)
 
 

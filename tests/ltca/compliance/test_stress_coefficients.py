@@ -154,7 +154,7 @@ def test_walls_are_not_clear_beside_loaded_contacts(drive, analysis):
     pose = analysis.full.pose[row]
     place = geometry.placement
     centre = (
-        place.race_centre(ANGLES[row]) + complex(pose[0], pose[1]) + place.hole_centres[hole] * np.exp(1j * pose[2])
+        place.races(ANGLES[row]).middle + complex(pose[0], pose[1]) + place.hole_centres[hole] * np.exp(1j * pose[2])
     )
     toward = np.angle(place.shaft_pin_centres[hole] - centre) - pose[2]
     assert np.angle(np.exp(1j * (middle - toward))) == pytest.approx(0.0, abs=2.0 * np.pi / wall.parameter.size)

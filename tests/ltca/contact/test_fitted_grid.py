@@ -6,7 +6,7 @@ import pytest
 from ltca.contact.contact_kind import ContactKind
 from ltca.contact.fitted_grid import RUNG, GridRung, solve_fitted, unit_grid
 from ltca.contact.pressure_cells import GRID_ROOM
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from validation.hertz import solve_point_contact
 
 MODULUS, SMALL, LARGE = 113e3, 2.0, 40.0
@@ -26,7 +26,7 @@ def test_grids_reach_as_far_as_the_widest_contact(rung, cells):
 def test_a_crowned_line_within_its_ends_is_an_elliptical_contact(length):
     """Load and largest pressure of Hertz; the ellipse is cut by cells, an error of their square."""
     approach = 2e-3
-    profile = SummedProfile(length=length, parts=(CircularCrown(length=length, crown_radius=LARGE),))
+    profile = Relief(length=length, crown_radius=LARGE)
     kind = ContactKind(length=length, contact_modulus=MODULUS, generator=profile, symmetric=True, cells=16)
     found = solve_fitted(kind, approach, SMALL, lambda x: x**2 / (2.0 * SMALL))
     hertz = solve_point_contact(approach, SMALL, LARGE, MODULUS)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.contact.free_end import free_end_factor
+from ltca.contact.free_end import guilbault_factor
 from ltca.contact.pressure_cells import PatchGrid, solve_cylinder_patch, solve_patch
 
 MODULUS = 113_187.0
@@ -161,7 +161,7 @@ def test_open_patch_gives_zeros():
 def test_free_ends_take_the_peak_away_and_soften_the_contact():
     half_space = cylinder(5e-3)
     mirrored = cylinder(5e-3, end_factor=1.0)
-    corrected = cylinder(5e-3, end_factor=free_end_factor(0.3))
+    corrected = cylinder(5e-3, end_factor=guilbault_factor(0.3))
     # plain mirroring makes the load almost even along the length
     assert mirrored.pressure.max() == pytest.approx(mirrored.mid_pressure, rel=0.02)
     assert corrected.load < mirrored.load < half_space.load

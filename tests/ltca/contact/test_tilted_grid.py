@@ -7,12 +7,12 @@ import pytest
 
 from ltca.contact.contact_kind import ContactKind, Separation
 from ltca.contact.tilted_grid import find_patch, press_tilted
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from validation.methods.pressed_grid import press
 
 LENGTH, MODULUS, RADIUS = 12.0, 115e3, 3.0
 SEPARATION = Separation(effective_radius=RADIUS, departure=lambda _, x: x**2 / (2.0 * RADIUS))
-CROWN = SummedProfile(length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * 5e-3)),))
+CROWN = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * 5e-3))
 
 
 def kind_of(generator=None, symmetric=True, cells=12):

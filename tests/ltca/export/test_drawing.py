@@ -56,7 +56,7 @@ def test_read_back_within_a_micron_of_the_exact_flank(kinds_of_drives, tmp_path,
     flank = FlankProfile.of_drive(single)
     # θ is within an eccentricity over the radius of the polar angle about the centre of the flank: on the same lobe.
     near = np.angle((line - flank.centre) / flank.turn)
-    foot = flank.nearest_parameter(line, near)
+    foot = flank.nearest_point(line, near).parameter
     assert np.max(np.abs(flank.distance(line, foot) + inward)) < MICRON
     # It runs once around: no foot is left out.
     turns = np.unwrap(foot)

@@ -95,7 +95,7 @@ def test_curvature_is_that_of_the_circle_through_three_points(drives):
         h = 1e-3 / drive.pin_wheel.number_of_pins
         for curve, curvature in (
             (profile.flank, profile.curvature),
-            (lambda t, p=profile: p.locus(t)[0], profile.locus_curvature),
+            (lambda t, p=profile: p.locus(t)[0], lambda t, p=profile: p.locus(t).curvature),
         ):
             a, b, c = curve(theta - h), curve(theta), curve(theta + h)
             cross = ((b - a).conjugate() * (c - b)).imag
@@ -146,7 +146,7 @@ def test_nearest_point_against_brute_force(drives):
         theta = rng.uniform(0.0, 2.0 * np.pi, 12)
         off = 2e-3 * drive.pin_wheel.pin_circle_radius
         point = profile.locus(theta)[0] + off * (rng.uniform(-1, 1, 12) + 1j * rng.uniform(-1, 1, 12))
-        found = profile.nearest_parameter(point, theta + rng.uniform(-0.1, 0.1, 12) / z)
+        found = profile.nearest_point(point, theta + rng.uniform(-0.1, 0.1, 12) / z).parameter
         for p, parameter in zip(point, found, strict=True):
             grid = np.linspace(0.0, 2.0 * np.pi, 400 * z, endpoint=False)
             best = grid[np.argmin(np.abs(profile.flank(grid) - p))]
@@ -167,7 +167,7 @@ def test_nearest_point_says_when_it_fails(monkeypatch):
     monkeypatch.setattr(ltca.geometry.flank, "MAX_ITERATIONS", 2)
     profile = FlankProfile(generating_radius=88.09, eccentricity=4.0, reduction_ratio=14.0, offset=6.65)
     with pytest.raises(ConvergenceError, match="contact points on the flank") as caught:
-        profile.nearest_parameter(np.array([80.0 + 5.0j]), np.array([1.0]))
+        profile.nearest_point(np.array([80.0 + 5.0j]), np.array([1.0]))
     assert len(caught.value.history) == 2
 
 

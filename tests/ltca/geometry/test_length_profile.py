@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from ltca.drive.parts import LengthProfile
-from ltca.geometry.length_profile import generator_profile
+from ltca.geometry.length_profile import Relief, generator_profile
 
 LENGTH, RADIUS = 11.8, 5.0
 ALL = LengthProfile(crown_drop=0.004, logarithmic_factor=1.2, end_relief_length=1.5, end_relief_depth=0.02)
@@ -27,17 +27,22 @@ def test_terms_add_up():
     assert profile.length == LENGTH
 
 
+ENDS = {"end_length", "end_depth"}
+
+
 @pytest.mark.parametrize(
     ("fields", "terms"),
     [
-        ({"crown_drop": 0.004}, 1),
-        ({"logarithmic_factor": 1.2}, 1),
-        ({"end_relief_length": 1.5, "end_relief_depth": 0.02}, 1),
-        ({"crown_drop": 0.004, "end_relief_length": 1.5, "end_relief_depth": 0.02}, 2),
+        ({"crown_drop": 0.004}, {"crown_radius"}),
+        ({"logarithmic_factor": 1.2}, {"logarithm"}),
+        ({"end_relief_length": 1.5, "end_relief_depth": 0.02}, ENDS),
+        ({"crown_drop": 0.004, "end_relief_length": 1.5, "end_relief_depth": 0.02}, {"crown_radius", *ENDS}),
     ],
 )
 def test_what_is_stated_is_there_and_nothing_else(fields, terms):
-    assert len(generator_profile(LengthProfile(**fields), LENGTH, RADIUS).parts) == terms
+    profile, none = generator_profile(LengthProfile(**fields), LENGTH, RADIUS), Relief(length=LENGTH)
+    names = ("crown_radius", "logarithm", *ENDS)
+    assert {name for name in names if getattr(profile, name) != getattr(none, name)} == terms
 
 
 def test_a_cylinder_has_no_profile():

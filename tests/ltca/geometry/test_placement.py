@@ -21,7 +21,7 @@ def test_numbering_starts_at_zero_and_runs_counter_clockwise(vary):
     np.testing.assert_allclose(
         place.roller_angles(np.array([1.5]))[0], 19.5 * 1.5 / 49.0 + 2.0 * np.pi * np.arange(11) / 11
     )
-    assert complex(place.race_centre(np.array(0.7))) == pytest.approx(4.0 * np.exp(0.7j))
+    assert complex(place.races(np.array(0.7)).middle) == pytest.approx(4.0 * np.exp(0.7j))
     assert float(place.wheel_rotation(np.array(1.4))) == pytest.approx(0.1)
 
 
@@ -84,8 +84,8 @@ def test_eccentrics_of_several_cranks_stand_where_their_errors_put_them():
     drive = parse_drive(shipped_drive("rv"), "rv").cases["nominal"]
     drive = with_fields(drive, {"crank.of.0.eccentricity_error": 0.006, "crank.of.2.phase_error": 2e-3})
     place, angle = Placement.of_drive(single_discs(drive)[0]), np.array([0.0, 1.1])
-    arms = place.race_centres(angle) - place.crank_axes
+    arms = place.races(angle).centre - place.crank_axes
     lengths, ahead = drive.crank.eccentricity + np.array([0.006, 0.0, 0.0]), np.array([0.0, 0.0, 2e-3])
     np.testing.assert_allclose(arms, lengths * np.exp(1j * (angle[:, None] + ahead)), rtol=0.0, atol=1e-13)
     np.testing.assert_allclose(place.mean_eccentricity, [drive.crank.eccentricity + 0.002], rtol=1e-14)
-    np.testing.assert_allclose(place.race_centre(angle), place.race_centres(angle).mean(axis=1), rtol=0.0, atol=1e-14)
+    np.testing.assert_allclose(place.races(angle).middle, place.races(angle).centre.mean(axis=1), rtol=0.0, atol=1e-14)

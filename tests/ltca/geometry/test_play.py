@@ -12,8 +12,8 @@ from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import first_contact
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.play import free_play, rigid_poses
-from ltca.testing.practical_drives import light_limit, pair_approaches
+from ltca.geometry.play import free_play
+from ltca.testing.practical_drives import light_limit, pair_approaches, rigid_poses
 
 CASES = ("CS-1", "CS-2", "CS-3", "CS-4", "CS-5", "CS-6")
 

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from ltca.compliance.near_field import projected_on_half_space, redistributed_approach
-from ltca.contact.free_end import FreeEnds, free_end_factor, free_ends_of, remaining_bulge
+from ltca.contact.free_end import FreeEnds, free_ends_of, guilbault_factor, remaining_bulge
 from ltca.contact.influence import end_images
 from ltca.contact.pressure_cells import solve_cylinder_patch
 from ltca.laws.sliced_contact import POINTS, slice_heights
 from ltca.laws.sliced_line import STRIP, SlicedLine
 
 LENGTH, MODULUS, RADIUS, SLICES = 12.0, 1.1e5, 3.0, 9
-FLUSH = (FreeEnds(reach=1.0, weight=free_end_factor(0.3)),)
+FLUSH = (FreeEnds(reach=1.0, weight=guilbault_factor(0.3)),)
 ONE_BEYOND = (FreeEnds(reach=1.0, weight=0.695), FreeEnds(reach=1.4, weight=0.695))
 
 
@@ -138,7 +138,7 @@ def test_bodies_count_by_their_compliance_and_length():
     steel, plastic = 0.91 / 2.06e5, (1.0 - 0.38**2) / 2600.0
     found = free_ends_of(10.0, steel + plastic, [(10.0, plastic, 0.38), (14.0, steel, 0.3)])
     assert [each.reach for each in found] == [1.0, 1.4]
-    np.testing.assert_allclose(found[0].weight, free_end_factor(0.38) * plastic / (steel + plastic), rtol=1e-12)
+    np.testing.assert_allclose(found[0].weight, guilbault_factor(0.38) * plastic / (steel + plastic), rtol=1e-12)
     # What does not reach beyond has all of its image at its end, what reaches far none.
     np.testing.assert_allclose(remaining_bulge((FreeEnds(reach=1.0, weight=0.4),), np.array([0.02])), 0.6, rtol=1e-12)
     assert remaining_bulge((FreeEnds(reach=1e4, weight=0.4),), np.array([0.02]))[0] > 0.9999

@@ -8,7 +8,7 @@ import pytest
 from ltca.contact.contact_kind import ContactKind, ContactKinds, Separation
 from ltca.contact.hertz import line_peak_pressure
 from ltca.contact.tilted_grid import press_tilted
-from ltca.geometry.length_profile import CircularCrown, SummedProfile
+from ltca.geometry.length_profile import Relief
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import slice_heights
 from ltca.laws.sliced_line import SlicedLine
@@ -22,9 +22,7 @@ LENGTH, MODULUS, RADIUS = 12.0, 115e3, 3.0
 def kind_of(drop):
     generator = None
     if drop:
-        generator = SummedProfile(
-            length=LENGTH, parts=(CircularCrown(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop)),)
-        )
+        generator = Relief(length=LENGTH, crown_radius=LENGTH**2 / (8.0 * drop))
     return ContactKind(length=LENGTH, contact_modulus=MODULUS, generator=generator, symmetric=True)
 
 

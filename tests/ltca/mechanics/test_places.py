@@ -16,11 +16,11 @@ def test_places_turn_with_the_disc(paper_cases):
     pose = np.array([[0.02, -0.01, turn, 0.0] for turn in (0.0, 0.1, -0.1)])
     system = ContactSystem(Reducer(discs=(model,)))
     _, in_bore, in_hole, *_ = system.respond(angle, pose, None, roughly=False).body_places(0)
-    centre = place.race_centre(angle) + pose[:, 0] + 1j * pose[:, 1]
+    centre = place.races(angle).middle + pose[:, 0] + 1j * pose[:, 1]
     back = np.exp(-1j * pose[:, 2, None])
     # Rollers touch the inner race; seen from the disc's centre, in its own frame.
     rays = model.geometry.rollers(angle)
-    rollers = place.race_centre(angle)[:, None] + rays.outermost * rays.direction
+    rollers = place.races(angle).middle[:, None] + rays.outermost * rays.direction
     bore = np.angle((rollers - centre[:, None]) * back)
     np.testing.assert_allclose(np.exp(1j * in_bore), np.exp(1j * bore), atol=1e-12)
     # A shaft pin presses on the wall of its hole on the side to which it is off the hole's centre, again in the disc's frame.

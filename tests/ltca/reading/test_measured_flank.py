@@ -49,7 +49,7 @@ def between_flanks(one, other):
     """Largest distance of the flank of one drive from that of another, mm."""
     points = FlankProfile.of_drive(one).flank(THETA)
     flank = FlankProfile.of_drive(other)
-    return np.max(np.abs(flank.distance(points, flank.nearest_parameter(points, THETA))))
+    return np.max(np.abs(flank.distance(points, flank.nearest_point(points, THETA).parameter)))
 
 
 def test_an_exported_flank_comes_back(exported, deviated):

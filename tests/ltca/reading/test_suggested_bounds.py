@@ -77,7 +77,7 @@ def test_the_largest_eccentricity_is_where_the_path_bends_as_the_equidistant_doe
 
     def sharpest(eccentricity):
         path = FlankProfile(generating_radius=circle, eccentricity=eccentricity, reduction_ratio=pins, offset=0.0)
-        return path.locus_curvature(np.linspace(0.0, 2.0 * np.pi / pins, 100_001)).max()
+        return path.locus(np.linspace(0.0, 2.0 * np.pi / pins, 100_001)).curvature.max()
 
     # Bisections leave 1e-9 of the eccentricity, samples 1e-9 of the curvature.
     assert sharpest(largest * (1.0 - 1e-6)) < 1.0 / pin < sharpest(largest * (1.0 + 1e-6))
