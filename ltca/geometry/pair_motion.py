@@ -7,11 +7,15 @@ together.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION, WHEEL_ANGLE, Coordinates
+
+Turns: TypeAlias = dict[int, ComplexArray]
+"""How leans that stand on a body follow the pose, by the place of a coordinate in it."""
 
 
 def dot(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -55,7 +59,7 @@ class PairMotion:
         total[..., DISC_ROTATION, DISC_ROTATION] += (load * self.along[..., DISC_ROTATION]).sum(axis=-1)
         return np.asarray(total)
 
-    def leaning(self, lean: ComplexArray, coordinates: Coordinates, turns: dict[int, ComplexArray]) -> PairTilt:
+    def leaning(self, lean: ComplexArray, turns: Turns, coordinates: Coordinates) -> PairTilt:
         """Return the tilt of the pairs from the lean of the disc at each less that of the other part, rad.
 
         `coordinates` are those of the pose; `turns` has how leans that stand on a body turn with it, by the place of its angle in
@@ -74,7 +78,7 @@ class PairMotion:
         """Σ λ_a ∂²δ/∂a∂q over a = x, y, from Σ λ_a s_a: pins in holes."""
         return (across * self.bending)[..., None] * self.along
 
-    def bend_leans(self, moment: FloatArray, coordinates: Coordinates) -> FloatArray:
+    def bend_leans(self, moment: FloatArray, turns: Turns, coordinates: Coordinates) -> FloatArray:
         """Return Σ M ∂²θ/∂q² over the pairs, but for third derivatives of the approach, which are of the order of the lean.
 
         Moments M are in N·mm, shape (positions, pairs); the answer has the shape (positions, coordinates, coordinates).
@@ -85,6 +89,11 @@ class PairMotion:
             for leans, sign in self._leans(coordinates):
                 total[:, leans.start + place] += sign * row
                 total[:, :, leans.start + place] += sign * row
+        for turning, turn in turns.items():
+            across = dot(self.along[..., 0] + 1j * self.along[..., 1], turn)
+            row = (moment[..., None] * self._bent_by(across)).sum(axis=1)
+            total[:, turning] += row
+            total[:, :, turning] += row
         return total
 
     @staticmethod

@@ -26,7 +26,17 @@ from ltca.geometry.coordinates import (
 )
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.length_profile import ACROSS, lead_relief, profile_across
-from ltca.geometry.pair_motion import BoreMotion, FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays, cross, dot
+from ltca.geometry.pair_motion import (
+    BoreMotion,
+    FlankMotion,
+    KnownPins,
+    PairMotion,
+    PairTilt,
+    RollerRays,
+    Turns,
+    cross,
+    dot,
+)
 from ltca.geometry.placement import Placement, Races
 from ltca.geometry.rotation import unit
 
@@ -307,18 +317,27 @@ class ContactGeometry:
 
         `leans` are those of the bent pins at the disc in the turning wheel, rad, shape (positions, z_P).
         """
-        place, coordinates = self.placement, self.coordinates_of(pose)
+        return flank.leaning(*self.flank_lean(crank_angle, pose, leans), self.coordinates_of(pose))
+
+    def flank_lean(
+        self, crank_angle: FloatArray, pose: FloatArray, leans: ComplexArray | None = None
+    ) -> tuple[ComplexArray, Turns]:
+        """Return the lean of the disc at each wheel pin less that of the pin, and how it turns with the wheel."""
+        place = self.placement
         turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
         own = (place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans) * turned
-        lean = self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own
-        return flank.leaning(lean, coordinates, {WHEEL_ANGLE: -1j * own})
+        return self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own, {WHEEL_ANGLE: -1j * own}
 
     def hole_tilt(self, pose: FloatArray, holes: PairMotion, leans: ComplexArray | None = None) -> PairTilt:
         """Return the tilt of shaft pins and holes; arguments as for `holes`, leans of the bent pins in the fixed frame."""
+        return holes.leaning(*self.hole_lean(pose, leans), self.coordinates_of(pose))
+
+    def hole_lean(self, pose: FloatArray, leans: ComplexArray | None = None) -> tuple[ComplexArray, Turns]:
+        """Return the lean of the disc at each hole less that of the pin, and how it follows disc and ring."""
         place, coordinates = self.placement, self.coordinates_of(pose)
         own = place.hole_leans * unit(pose[:, DISC_ROTATION, None])
         lean = self.lean(pose) + own - place.shaft_pin_leans
-        turns = {DISC_ROTATION: 1j * own}
+        turns: Turns = {DISC_ROTATION: 1j * own}
         if leans is not None:
             lean = lean - leans
         if coordinates.ring and np.any(self.tip_slope):
@@ -326,7 +345,7 @@ class ContactGeometry:
             ring = coordinates.ring_place
             lean = lean - _moved(pose[:, ring], by_ring)
             turns |= {ring.start + number: -by_ring[..., number] for number in range(3)}
-        return holes.leaning(lean, coordinates, turns)
+        return lean, turns
 
     def roller_tilt(self, pose: FloatArray, bores: BoreMotion, rays: RollerRays) -> PairTilt:
         """Return the tilt of race and bore, by which the sum of both approaches of a roller grows with its height.

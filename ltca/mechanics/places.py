@@ -46,10 +46,9 @@ class DiscPlaces:
         self.tilts: tuple[PairTilt, PairTilt] | None = None
         if geometry.coordinates_of(pose).leans:
             lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
-            self.tilts = (
-                geometry.flank_tilt(angle, pose, self.flank, lean_pins),
-                geometry.hole_tilt(pose, self.holes, lean_holes),
-            )
+            leaning = geometry.flank_lean(angle, pose, lean_pins), geometry.hole_lean(pose, lean_holes)
+            self.turns, own = (leaning[0][1], leaning[1][1]), geometry.coordinates_of(pose)
+            self.tilts = self.flank.leaning(*leaning[0], own), self.holes.leaning(*leaning[1], own)
             journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
             self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
 

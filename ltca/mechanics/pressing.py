@@ -227,8 +227,8 @@ def bends(at: Any, disc: int) -> FloatArray:
     pins, bores, holes, _ = system.of_kind[disc]
     found = places.flank.bend(at.load[:, 0, pins]) + places.holes.bend(at.load[:, 0, holes])
     if places.tilts is not None:
-        found += places.flank.bend_leans(at.load[:, 1, pins] * at.half, system.one)
-        found += places.holes.bend_leans(at.load[:, 1, holes] * at.half, system.one)
+        found += places.flank.bend_leans(at.load[:, 1, pins] * at.half, places.turns[0], system.one)
+        found += places.holes.bend_leans(at.load[:, 1, holes] * at.half, places.turns[1], system.one)
     cranks = places.bores.arm.shape[1]
     push = (at.load[:, 0, bores] * places.outward).reshape(found.shape[0], cranks, -1).sum(axis=2).conjugate()
     found[:, DISC_ROTATION, DISC_ROTATION] += (push * places.bores.arm).real.sum(axis=1)
