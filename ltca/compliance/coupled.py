@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
+from ltca.compliance.coefficients import SOLID, BodyPlaces, InfluenceCoefficients
 from ltca.compliance.half_space import shaft_pin_springs
 from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
@@ -60,34 +60,37 @@ class BodyFlexibility:
         What stands behind shaft pins in their holes, mm/N.
     unit : float
         Of what is taken and of the loads, by mm/N.
-    places : tuple
-        Of the contacts (`InfluenceCoefficients.disc_matrix`).
+    places : BodyPlaces
+        Of all contacts.
+    counts : tuple of int
+        Numbers of wheel pins, rollers and holes.
     loaded : tuple of array of int, shape (positions, chosen)
         Wheel pins, rollers and holes that carry.
     """
 
     coefficients: InfluenceCoefficients
-    own: Any
+    own: OwnParts
     race: FloatArray
     behind: float
     unit: float
-    places: tuple[Any, ...]
+    places: BodyPlaces
+    counts: tuple[int, int, int]
     loaded: tuple[NDArray[np.intp], ...]
 
     @cached_property
     def among(self) -> FloatArray:
         """What loaded pins, rollers in the bores and holes take by each other's loads, shape (positions, n, n), mm/N."""
-        flank, bore, holes, on_flank, radius = self.places
-        found = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded, among=True)
-        place = np.arange(found.shape[1])
-        found[:, place, place] += self.diagonal
-        return self.unit * found if self.unit != 1.0 else found
+        first = np.cumsum((0, *self.counts[:2]))
+        columns = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
+        found, place = self.coefficients.disc_matrix(self.places.take(columns)), np.arange(columns.shape[1])
+        found[:, place, place] += np.repeat(self._alone, [some.shape[1] for some in self.loaded])
+        found *= self.unit
+        return found
 
     @property
-    def diagonal(self) -> FloatArray:
-        """What is added of each loaded contact alone."""
-        own = self.own.pin, self.own.outer, self.own.hole + self.behind
-        return np.repeat(own, [some.shape[1] for some in self.loaded])
+    def _alone(self) -> tuple[float, float, float]:
+        """What a pin, a roller in its bore and a hole yield alone, beyond the coefficients."""
+        return self.own.pin, self.own.outer, self.own.hole + self.behind
 
     @property
     def on_race(self) -> FloatArray:
@@ -101,14 +104,9 @@ class BodyFlexibility:
         return self.unit * float(self.coefficients.roller[0, 1])
 
     def taken(self, load: FloatArray) -> FloatArray:
-        """What all pins, rollers in the bores and holes take by the loads of the chosen ones, shape (positions, n)."""
-        flank, bore, holes, on_flank, radius = self.places
-        matrix = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded)
-        found = np.matmul(matrix, load[..., None])[..., 0]
-        first = np.cumsum((0, flank.shape[1], bore.shape[1]))
-        chosen = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
-        found[np.arange(found.shape[0])[:, None], chosen] += self.diagonal * load
-        return np.asarray(self.unit * found)
+        """What pins, rollers in the bores and holes take by the loads of all of them, shape (positions, contacts)."""
+        together = self.coefficients.disc_approach(self.places, load)
+        return np.asarray(self.unit * (together + np.repeat(self._alone, self.counts) * load))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -228,18 +226,19 @@ class CoupledCompliance:
             place.inner_effective_radii,
         )
 
-    def body_flexibility(self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
+    def body_flexibility(self, places: BodyPlaces, loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
         """Return what the bodies of a disc yield of approaches by loads and, of solid bodies in slices, of tilts by moments.
 
-        `places` are those that `InfluenceCoefficients.disc_matrix` takes, `loaded` the wheel pins, rollers and holes that carry.
+        `loaded` are the wheel pins, rollers and holes that carry.
         """
-        whole = self.coefficients
-        found = [BodyFlexibility(whole, self.own, self.race, self.hole_spring, 1.0, places, tuple(loaded))]
-        tilting, own = whole.tilting, self.own.tilting
-        if self.race_tilting is not None and tilting is not None and own is not None:
+        whole, place = self.coefficients, self.geometry.placement
+        counts = place.wheel_pin_radii.shape[-1], place.roller_radii.shape[-1], place.hole_radii.shape[-1]
+        at = places, counts, tuple(loaded)
+        found = [BodyFlexibility(whole, self.own, self.race, self.hole_spring, 1.0, *at)]
+        if self.race_tilting is not None and whole.tilting is not None and self.own.tilting is not None:
             # What a pin stands on behind its contact is rigid against moments.
             unit = (0.5 * whole.thickness) ** 2
-            found.append(BodyFlexibility(tilting, own, self.race_tilting, 0.0, unit, places, tuple(loaded)))
+            found.append(BodyFlexibility(whole.tilting, self.own.tilting, self.race_tilting, 0.0, unit, *at))
         return found
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
