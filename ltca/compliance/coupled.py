@@ -22,11 +22,12 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import SOLID, BodyPlaces, InfluenceCoefficients
 from ltca.compliance.half_space import shaft_pin_springs
-from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
+from ltca.compliance.near_field import NearField, OwnParts, near_field_contacts, plane_strain_datum
 from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
 from ltca.compliance.response import (
     ContactLaws,
     ContactPressures,
+    DiscContacts,
     DiscResponse,
     KindPressures,
 )
@@ -36,11 +37,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import (
-    back_shaft_pins,
-    shaft_pin_stiffness,
-    tip_motion,
-)
+from ltca.laws.backed import HALF_SPACE_DATUM, back_shaft_pins, shaft_pin_stiffness
 from ltca.laws.contact_law import ContactLaw
 
 
@@ -115,12 +112,12 @@ class CoupledCompliance:
 
     Attributes
     ----------
-    geometry : ContactGeometry
-        The contact geometry of the drive.
+    contacts : DiscContacts
+        With the laws of the near fields.
     coefficients : InfluenceCoefficients
         Body parts, rollers as long as they are.
-    near_field : NearFieldLaws
-        Laws of the near fields.
+    has_ends : bool
+        Whether contacts end somewhere: in plane strain they do not.
     hole_law : ContactLaw
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
     hole_spring : float
@@ -135,10 +132,10 @@ class CoupledCompliance:
 
     grids_can_check: ClassVar[bool] = False
 
-    geometry: ContactGeometry
+    contacts: DiscContacts
     coefficients: InfluenceCoefficients
-    near_field: NearFieldLaws
-    hole_law: ContactLaw
+    has_ends: bool
+    hole_law: Any
     hole_spring: float
     race: FloatArray
     own: OwnParts
@@ -179,35 +176,35 @@ class CoupledCompliance:
                     f"{fingerprint}"
                 ]
             )
-        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
-        place = geometry.placement
         yields = hole_near_field and shaft_pins_yield(drive)
-        laws = NearFieldLaws.of_drive(
+        contacts = near_field_contacts(
             drive,
             near_field,
             rigid_shaft_pins=hole_near_field and not yields,
             solid=coefficients.plane == SOLID,
         )
+        geometry, place = contacts.geometry, contacts.geometry.placement
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
-        slices = drive.contact.slices
+        slices, has_ends = drive.contact.slices, near_field == "half-space"
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
-        at_hole: Any = laws.hole
+        at_hole = contacts.hole_law
         if not hole_near_field and not bends_behind:
             at_hole = shaft_pin_springs(drive, place.shaft_pin_plays)
         elif slices == 1:
-            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth)
+            depth = HALF_SPACE_DATUM * drive.disc.thickness if has_ends else plane_strain_datum(drive)
+            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, depth)
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
-        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
+        own = OwnParts.of_drive(drive, geometry, body, near_field, elastic_shaft_pins=yields and bare)
         on_race = place.roller_cage_angles, float(place.inner_race_radius)
         race, tilting = body.race_matrix(*on_race), None
         if body.tilting is not None and own.tilting is not None:
             tilting = body.tilting.race_matrix(*on_race) + own.tilting.inner * np.eye(race.shape[0])
         return cls(
-            geometry=geometry,
+            contacts=contacts,
             coefficients=body,
-            near_field=laws,
+            has_ends=has_ends,
             hole_law=at_hole,
             hole_spring=1.0 / shaft_pin_stiffness(drive) if hole_near_field and not bends_behind else 0.0,
             race=race + own.inner * np.eye(race.shape[0]),
@@ -216,15 +213,14 @@ class CoupledCompliance:
         )
 
     @property
+    def geometry(self) -> ContactGeometry:
+        """The contact geometry of the drive."""
+        return self.contacts.geometry
+
+    @property
     def contact_laws(self) -> ContactLaws:
-        """Laws of the contacts."""
-        near, place = self.near_field, self.geometry.placement
-        return ContactLaws(
-            (near.pin, near.outer, self.hole_law, near.inner),
-            place.outer_effective_radii,
-            place.hole_effective_radii,
-            place.inner_effective_radii,
-        )
+        """Laws of the contacts: near fields, and what is behind those of the holes."""
+        return replace(self.contacts, hole_law=self.hole_law).contact_laws
 
     def body_flexibility(self, places: BodyPlaces, loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
         """Return what the bodies of a disc yield of approaches by loads and, of solid bodies in slices, of tilts by moments.
@@ -243,25 +239,24 @@ class CoupledCompliance:
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
-        laws, place = self.near_field, self.geometry.placement
+        laws, kinds, place, rollers = self.contacts, self.contacts.kinds, self.geometry.placement, response.rollers
+        rigid = laws.rigid_shaft_pins
         if response.leaning_pins is not None:
-            return pressures_in_slices(
-                response, laws.kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=laws.rigid_shaft_pins
-            )
+            return pressures_in_slices(response, kinds, place, has_ends=self.has_ends, rigid_shaft_pins=rigid)
         assert response.deformation is not None
+        pins, bores = response.pin_load.shape[1], rollers.outer_load.shape[1]
         near = response.deformation[:, 0]
-        outer_radius, hole_radius, inner_radius = self.contact_laws[1:]
-        pins, rollers = response.pin_load.shape[1], outer_radius.size
-        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, inner_radius)
-        hole, _ = laws.hole.approach_at_load(response.hole_load, hole_radius)
+        _, outer_radius, hole_radius, inner_radius = laws.contact_laws
+        inner, _ = laws.inner_law.approach_at_load(rollers.inner_load, inner_radius)
+        hole, _ = laws.hole_law.approach_at_load(response.hole_load, hole_radius)
 
         def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
-            return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
+            return pressures_of_law(law, kind if self.has_ends else None, approach, radius)
 
         return ContactPressures(
-            pins=read(laws.pin, laws.kinds.pins, near[:, :pins], response.flank.effective_radius),
-            outer=read(laws.outer, laws.kinds.outer, near[:, pins : pins + rollers], outer_radius),
-            inner=read(laws.inner, laws.kinds.inner, inner, inner_radius),
-            holes=read(laws.hole, laws.kinds.holes, hole, hole_radius),
-            rigid_shaft_pins=laws.rigid_shaft_pins,
+            pins=read(laws.pin_law, kinds.pins, near[:, :pins], response.flank.effective_radius),
+            outer=read(laws.outer_law, kinds.outer, near[:, pins : pins + bores], outer_radius),
+            inner=read(laws.inner_law, kinds.inner, inner, inner_radius),
+            holes=read(laws.hole_law, kinds.holes, hole, hole_radius),
+            rigid_shaft_pins=rigid,
         )

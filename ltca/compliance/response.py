@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.contact.contact_kind import ContactKinds
 from ltca.geometry.coordinates import DISC_PLACE, X, Y
 from ltca.geometry.pair_motion import FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
@@ -356,6 +357,40 @@ class DiscModel(Protocol):
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return the pressures behind a response of this model."""
         ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscContacts:
+    """Geometry of the contacts of a disc, their laws, and what pressures are read by.
+
+    Attributes
+    ----------
+    pin_law, outer_law, inner_law, hole_law : ContactLaw, or law in slices
+        Of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
+    kinds : ContactKinds
+        Lengths and profiles of the contacts.
+    rigid_shaft_pins : bool
+        Whether shaft pins are rigid where they touch their holes.
+    """
+
+    geometry: ContactGeometry
+    pin_law: Any
+    outer_law: Any
+    inner_law: Any
+    hole_law: Any
+    kinds: ContactKinds
+    rigid_shaft_pins: bool = False
+
+    @property
+    def contact_laws(self) -> ContactLaws:
+        """Laws of the contacts."""
+        place = self.geometry.placement
+        return ContactLaws(
+            (self.pin_law, self.outer_law, self.hole_law, self.inner_law),
+            place.outer_effective_radii,
+            place.hole_effective_radii,
+            place.inner_effective_radii,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.coefficients import BodyPlaces, without_coupling
 from ltca.drive.parts import part_turn
 from ltca.drive.single_discs import equal_parts, nominal_shape, single_discs
 from ltca.geometry.boundary_stations import Boundary
@@ -86,7 +86,9 @@ def test_coefficients_of_the_part_are_found_where_it_stands(phase):
         ],
         axis=1,
     )
-    matrix = found.disc_matrix(theta, bore, holes, turned.flank(theta), float(disc.bore_radius))[0]
+    matrix = found.disc_matrix(
+        BodyPlaces.on_walls(theta, turned.flank(theta), bore, float(disc.bore_radius), holes, 1)
+    )[0]
     # the metal of the part that is at these places of the disc: turned back by whole hole pitches
     metal = field(points[0] * np.exp(-2j * np.pi * drive.part_turn[1] / 8.0))
     # interpolation between stations: to round-off on circles, 1e-6 on the lobes

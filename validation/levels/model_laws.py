@@ -121,7 +121,7 @@ def pair_approaches(
         place.cranks,
     )
     body = np.diag(coefficients.disc_matrix(places)[0]) + model.own.pin
-    near, _ = model.near_field.pin.approach_at_load(load, flank.effective_radius[0])
+    near, _ = model.contacts.pin_law.approach_at_load(load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 
 

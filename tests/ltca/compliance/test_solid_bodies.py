@@ -198,7 +198,9 @@ def displaced(model, pin, approach, tilt):
     centres[pin] += approach
     leans[pin] += tilt
     moved = replace(place, wheel_pin_centres=centres, wheel_pin_leans=leans)
-    return replace(model, discs=(replace(disc, geometry=replace(disc.geometry, placement=moved)),))
+    return replace(
+        model, discs=(replace(disc, contacts=replace(disc.contacts, geometry=replace(disc.geometry, placement=moved))),)
+    )
 
 
 def test_loads_and_moments_are_slopes_of_one_energy(hold_coefficients):
