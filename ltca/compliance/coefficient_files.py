@@ -1,8 +1,7 @@
 """Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
 
-`ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
-`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` or ``bodies``, ``store`` (what writes
-the result; of solid bodies alone) and ``processes`` (how
+`ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package `fem` does): a
+function of a drive, ``state`` or ``bodies``, ``store`` (what writes the result; of solid bodies alone) and ``processes`` (how
 many of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
 """
 
@@ -77,28 +76,11 @@ def find_coefficients(
     near_field: NearField = "half-space",
     bodies: Bodies = "plane",
 ) -> InfluenceCoefficients:
-    """Return the coefficients of a drive: from a file, from the cache, or newly derived and kept there.
+    """Return the coefficients of a drive of one disc: from one of some files of ``cyclo derive``, or, without files, those that
+    are kept or newly derived.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive; its load and single-part errors do not matter.
-    files : sequence of Path, optional
-        Files of ``cyclo derive``, one of which must belong to the drive.
-    near_field : {"plane-strain", "half-space"}
-        What they are wanted for.
-    bodies : {"plane", "solid"}
-        What bodies they are of.
-
-    Returns
-    -------
-    InfluenceCoefficients
-        For `ltca.compliance.coupled`.
-
-    Raises
-    ------
-    CycloError
-        When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
+    Raises `CycloError` when no file fits the drive, the near field that they are wanted for cannot represent the drive, or nothing
+    is installed that derives.
     """
     require(drive, _ENGINES[near_field])
     if files is not None:
@@ -113,29 +95,10 @@ def find_case_coefficients(
     near_field: NearField = "half-space",
     bodies: Bodies = "plane",
 ) -> dict[str, InfluenceCoefficients]:
-    """Return the coefficients of each case, those of each distinct shape derived once.
+    """Return the coefficients by case, of several discs by case and disc; those of each distinct shape are derived once.
 
-    Parameters
-    ----------
-    cases : mapping of str to Drive
-        By name; of several discs each counts for itself.
-    files : sequence of Path
-        Files of ``cyclo derive``: each must serve a case, and each case must be served by one. Without any, those that
-        are not in the cache are derived and kept there.
-    near_field : {"plane-strain", "half-space"}
-        What they are wanted for.
-    bodies : {"plane", "solid"}
-        What bodies they are of.
-
-    Returns
-    -------
-    dict of str to InfluenceCoefficients
-        By case, of several discs by case and disc.
-
-    Raises
-    ------
-    CycloError
-        As `find_coefficients`; before anything is derived.
+    Each of the files must serve a case, and each case must be served by one. Errors are those of `find_coefficients`; they come
+    before anything is derived.
     """
     for drive in cases.values():
         require(drive, _ENGINES[near_field])

@@ -25,7 +25,6 @@ from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
 from ltca.geometry.boundary_stations import (
-    LAGRANGE_POINTS,
     Boundary,
     boundaries_of,
     turned_boundaries,
@@ -78,7 +77,8 @@ class BodyPlaces(NamedTuple):
 
     def take(self, columns: NDArray[np.intp]) -> BodyPlaces:
         """Return some of the contacts by their numbers, ascending, shape (positions, chosen)."""
-        return BodyPlaces(*(np.take_along_axis(values, columns, axis=1) for values in self))
+        wall, parameter, point = (np.take_along_axis(values, columns, axis=1) for values in self)
+        return BodyPlaces(wall, parameter, point)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,28 +96,24 @@ class InfluenceCoefficients:
         "strain" or "stress", state of the body part; or "solid".
     thickness : float
         Of all bodies but solid rollers, which are as long as they are, mm.
-    flank : Boundary
-        Stations of the flank.
-    bores : tuple of Boundary
-        Stations of the bore of each crank.
-    holes : tuple of Boundary
-        Stations of each hole.
+    flank, bores, holes : Boundary, or tuple of Boundary
+        Stations of the flank, of the bore of each crank and of each hole.
     disc : array, shape (stations, stations)
         Smooth part of the disc.
     pin : float
-        Smooth part of a wheel pin.
+        Of a wheel pin.
     roller : array, shape (2, 2)
         Of a roller; rows and columns inner, outer.
     race : array, shape (angles,)
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
-        Factor κ of −ln(distance) in each body, mm/N or rad/(N·mm).
+        Factor κ of −ln(distance) in each body.
     stress : StressCoefficients or None
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
     warning : str
-        What to tell of figures that their file states about its accuracy and that are out of bounds; "" of none.
+        About figures of its accuracy that the file states and that are out of bounds; "" of none.
     tilting : InfluenceCoefficients or None
         Tilts by moments of solid bodies; None of plane ones, which take nothing of a tilt.
     """
@@ -150,15 +146,7 @@ class InfluenceCoefficients:
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
 
-        Parameters
-        ----------
-        drive : Drive
-            With as many teeth, bores and holes.
-
-        Raises
-        ------
-        DriveError
-            When the numbers of bores or holes differ.
+        Raises `DriveError` where the drive has not as many bores and holes.
         """
         counts = (
             ("crank.number", drive.crank.number, self.bores),
@@ -174,12 +162,8 @@ class InfluenceCoefficients:
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
     def placed_in(self, drive: Drive) -> InfluenceCoefficients:
-        """Return the coefficients of the part as it stands in a disc whose flank is turned against bores and holes.
-
-        Parameters
-        ----------
-        drive : Drive
-            Of one disc; which part it is and how that stands in it is told by `ltca.drive.parts.part_turn`.
+        """Return the coefficients of the part as it stands in the disc of a drive, whose flank is turned against bores and holes
+        (`ltca.drive.parts.part_turn`).
         """
         _, steps, tooth_pitches = drive.part_turn
         if steps == 0 and tooth_pitches == 0:
@@ -250,16 +234,7 @@ class InfluenceCoefficients:
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
         """Return the coefficients between the inner contacts of all rollers, on the race of each crank for itself, mm/N.
 
-        Parameters
-        ----------
-        angles : array, shape (cranks · n_BR,)
-            Polar angles of the contacts in the cage, crank after crank and the same in each, rad.
-        radius : float
-            r_i, mm.
-
-        Returns
-        -------
-        array, shape (cranks · n_BR, cranks · n_BR)
+        `angles` are polar angles of the contacts in the cage, crank after crank and the same in each, rad; `radius` is r_i, mm.
         """
         cranks = len(self.bores)
         angles = angles[: angles.size // cranks]
@@ -291,23 +266,18 @@ def logarithm_factor(material: Material, thickness: float, plane: str = "strain"
 def load_coefficients(
     path: Path, drive: Drive, *, lawful: bool | Literal["quick"] = True, bodies: Bodies | None = None
 ) -> InfluenceCoefficients:
-    """Read the coefficients of a drive.
+    """Read the coefficients of a drive from a file of ``cyclo derive``.
 
     Parameters
     ----------
     path : Path
-        File of ``cyclo derive``.
+        The file.
     drive : Drive
         The drive they must belong to.
     lawful : bool or "quick"
         Check their laws, which takes a second; "quick" those that take milliseconds, where all held when they were derived.
     bodies : {"plane", "solid"}, optional
         What bodies they must be of; any by default.
-
-    Returns
-    -------
-    InfluenceCoefficients
-        Ready to be evaluated at any place.
 
     Raises
     ------
@@ -341,14 +311,12 @@ def bodies_of(data: Labelled) -> Bodies:
     return "solid" if is_solid(data) else "plane"
 
 
-def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
-    """Take the half-plane's logarithm off every entry of a file."""
-    even = _smooth_parts(data, drive, shared=shared)
-    return replace(even, tilting=_smooth_parts(data, drive, shared=shared, tilts=True)) if even.plane == SOLID else even
-
-
-def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False) -> InfluenceCoefficients:
-    """Smooth parts of approaches by loads, or of tilts by moments, whose logarithms have 12 by the square of the length."""
+def _coefficients_of_dataset(
+    data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False
+) -> InfluenceCoefficients:
+    """Take the half-plane's logarithm off every entry of a file: of approaches by loads, of solid bodies of tilts by moments,
+    whose logarithms have 12 by the square of the length, as well.
+    """
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     # Solid rollers have their own length.
     length = drive.roller_length if plane == SOLID else thickness
@@ -396,27 +364,7 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
         pin_logarithm=pin_logarithm,
         roller_logarithm=roller_logarithm,
         race_logarithm=race_logarithm,
-    )
-
-
-def without_coupling(drive: Drive) -> InfluenceCoefficients:
-    """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
-    cranks, holes = drive.crank.number, drive.number_of_holes
-    flank, *walls = [Boundary(first=k * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(1 + cranks + holes)]
-    return InfluenceCoefficients(
-        fingerprint=drive.shape_fingerprint(),
-        shared=False,
-        plane="none",
-        thickness=drive.disc.thickness,
-        flank=flank,
-        bores=tuple(walls[:cranks]),
-        holes=tuple(walls[cranks:]),
-        disc=np.zeros(((1 + cranks + holes) * LAGRANGE_POINTS,) * 2),
-        pin=0.0,
-        roller=np.zeros((2, 2)),
-        race=np.zeros(LAGRANGE_POINTS),
-        disc_logarithm=0.0,
-        pin_logarithm=0.0,
-        roller_logarithm=0.0,
-        race_logarithm=0.0,
+        tilting=_coefficients_of_dataset(data, drive, shared=shared, tilts=True)
+        if plane == SOLID and not tilts
+        else None,
     )

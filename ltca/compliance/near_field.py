@@ -238,21 +238,10 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
     .. math:: A = \kappa_l \left( \ln\frac{2R}{b} + \frac14 - \frac{\kappa + 2}{2(\kappa + 1)} \right), \qquad
               \kappa_l = \frac{2(1 - \nu^2)}{\pi E t},
 
-    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, (3 − ν)/(1 + ν) in plane stress (without ν in κ_l).
-
-    Parameters
-    ----------
-    radius : float
-        R, mm.
-    poisson_ratio : float
-        ν.
-    plane : {"strain", "stress", "solid"}
-        Plane strain, which slices of a solid pin are in as well, or plane stress.
-
-    Returns
-    -------
-    float
-        A/κ_l + ln(b/2) − 1/4: what is left when the logarithm of a patch on itself is taken off, in mm under the logarithm.
+    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, in which slices of a solid pin are as well, (3 − ν)/(1 + ν) in plane
+    stress (without ν in κ_l). What is returned is
+    :math:`A/\kappa_l + \ln(b/2) - 1/4`: what is left when the logarithm of a patch on itself is taken off, in mm under the
+    logarithm.
 
     Examples
     --------
@@ -267,17 +256,8 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
 def finite_length_approach(length: float, half_width: float) -> float:
     """Return the mean displacement of a half-space over a patch of finite length, times E/(1 − ν²) per load, 1/mm.
 
-    Parameters
-    ----------
-    length : float
-        L, mm.
-    half_width : float
-        b at mid-length, mm.
-
-    Returns
-    -------
-    float
-        Pressure-weighted mean over the patch pressed by a straight cylinder: its approach less the mean separation.
+    It is the pressure-weighted mean over the patch pressed by a straight cylinder of that length L, mm, with the half-width b, mm,
+    at mid-length: its approach less the mean separation.
     """
     law = LineContactLaw(length, 1.0)
     # Newton's method on ln δ = ln b² + ln m(ln(δ/L²)) at a radius of 1: m = ρδ/b² goes from 0.5 to 10 over all of the law, so
@@ -340,20 +320,8 @@ def projected_on_half_space(
     To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of
     plane strain with the datums 2t/e and 2t/e^{7/3}.
 
-    Parameters
-    ----------
-    length : float
-        t, mm.
-    half_width : float
-        b, mm.
-    free_ends : tuple of FreeEnds
-        Of the body, whose images count as well: at the distances :math:`s` of points and images both loads have the densities of
-        sums of two evenly or linearly spread heights.
-
-    Returns
-    -------
-    tuple of float
-        Of the even load by 1 N and of the linear one by 1 N·mm.
+    t is the `length` and b the `half_width`, mm. Images of `free_ends` of the body count as well: at the distances :math:`s` of
+    points and images both loads have the densities of sums of two evenly or linearly spread heights.
 
     Examples
     --------

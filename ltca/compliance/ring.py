@@ -14,7 +14,6 @@ the even part of the pressure :math:`p = \sum p_n \cos n\theta` of the unit forc
 from __future__ import annotations
 
 import sys
-from functools import partial
 from math import pi
 from pathlib import Path
 
@@ -68,7 +67,7 @@ def _of_elements(drive: Drive, lender: Drive) -> FloatArray:
     assert ring is not None
     assert own is not None
     unit = 1.0 / (own.material.youngs_modulus * own.width)
-    among, pins = unit * _known(lender), wheel.number_of_pins
+    among, pins = unit * known_ring(lender), wheel.number_of_pins
     seats = 2.0 * pi * np.arange(pins) / pins
     places, radii = seats, np.full(pins, wheel.pin_circle_radius)
     if ring.flange == "built-in":
@@ -94,24 +93,26 @@ def expected_ring_seconds(drive: Drive) -> float:
     return SECONDS_PER_PIN * drive.pin_wheel.number_of_pins
 
 
-def derive_beforehand(drive: Drive) -> None:
-    """Derive the plane ring of a drive, so that it is found; CycloError where that cannot be."""
-    _known(drive)
-
-
-def _known(drive: Drive) -> FloatArray:
-    """The content of the file of a drive's ring, found once in a process."""
+def known_ring(drive: Drive) -> FloatArray:
+    """Return the content of the file of a drive's ring, found or derived once in a process; CycloError where that cannot be."""
     key = ring_fingerprint(drive)
     if key not in _KNOWN:
         while len(_KNOWN) >= MAX_KNOWN:
             del _KNOWN[next(iter(_KNOWN))]
-        _KNOWN[key] = _found(drive)
+        _KNOWN[key] = _kept_or_derived(drive)
     return _KNOWN[key]
 
 
-def _found(drive: Drive) -> FloatArray:
+def _kept_or_derived(drive: Drive) -> FloatArray:
     """The same from the cache, or newly derived and kept there."""
-    name, read = file_name(drive), partial(_read, drive)
+    name = file_name(drive)
+
+    def read(path: Path) -> FloatArray:
+        dataset = read_ring(path)
+        require_same_ring(dataset, drive, str(path))
+        found: FloatArray = dataset["flexibility"].values.astype(float)
+        return found
+
     if (found := read_kept(name, read)) is not None:
         return found
     derive = derivation(DERIVATION)
@@ -126,13 +127,6 @@ def _found(drive: Drive) -> FloatArray:
         )
         write_ring(derive(drive), path)
     return read(kept_file(name))
-
-
-def _read(drive: Drive, path: Path) -> FloatArray:
-    dataset = read_ring(path)
-    require_same_ring(dataset, drive, str(path))
-    found: FloatArray = dataset["flexibility"].values.astype(float)
-    return found
 
 
 def file_name(drive: Drive) -> str:
@@ -162,22 +156,8 @@ def _of_slot(drive: Drive) -> FloatArray:
 def slot_yield(half_arc: float, poisson_ratio: float, datum: float) -> FloatArray:
     """Return the radial and tangential displacement of a seat in an infinite plate by a unit force on its wall, times E b.
 
-    The force acts as the normal pressure of `fem.coefficients.ring` on an arc, and the displacement is the mean with the same
-    weights, relative to the circle of `datum` radii; plane stress.
-
-    Parameters
-    ----------
-    half_arc : float
-        Half the angle of the loaded arc, rad.
-    poisson_ratio : float
-        ν.
-    datum : float
-        Radius of the circle relative to which the seat moves, by the seat's radius.
-
-    Returns
-    -------
-    array, shape (2,)
-        Radial, tangential.
+    The force acts as the normal pressure of `fem.coefficients.ring` on an arc of twice `half_arc`, rad, and the displacement is
+    the mean with the same weights, relative to the circle of `datum` radii of the seat; plane stress.
 
     Examples
     --------

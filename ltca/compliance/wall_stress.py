@@ -8,13 +8,14 @@ own pressure left out, is what the disc adds to them: half of it to the largest 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.response import ContactPressures, DiscModel, DiscResponse
-from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
+from ltca.compliance.stress_coefficients import StressCoefficients, evaluate_wall_stress
 
 CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""
@@ -29,16 +30,10 @@ POSITIONS_PER_CHUNK = 128
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallProfile:
-    """Stress along one wall of the disc.
+    """Stress along one wall of the disc at places: θ on the flank, polar angles in the disc frame about its centre, rad.
 
-    Attributes
-    ----------
-    parameter : array, shape (places,)
-        θ on the flank, polar angle in the disc frame about its centre on a bore or hole, rad.
-    stress : array, shape (positions, places)
-        Tension positive, MPa; under a contact without the contact's own pressure.
-    clear : array of bool, shape (positions, places)
-        Farther than four half-widths from every loaded contact on the wall.
+    `stress` and `clear` have the shape (positions, places): tension positive, MPa, under a contact without the contact's own
+    pressure; and whether a place is farther than four half-widths from every loaded contact on the wall.
     """
 
     parameter: FloatArray
@@ -67,17 +62,12 @@ class WallStresses:
     root, root_parameter : array, shape (positions, lobes)
         Along the flank about each lobe root, from crest to crest, and where, θ, rad. Root k lies at θ = 2πk/z_C.
     bore, bore_parameter : array, shape (positions,)
-        Along the bore, the largest of several bores, and where, polar angle about the centre of that bore in the disc
-        frame, rad.
+        Along the bore, the largest of several bores, and where, polar angle in the disc frame about its centre, rad.
     hole, hole_parameter : array, shape (positions, z_PS)
-        Along each hole wall, and where, polar angle about its centre in the disc frame, rad.
-    pin_contact : array, shape (positions, z_P)
-        In the flank under each wheel pin, along the wall, the contact's own pressure left out; where the pin would
-        touch, if it is open.
-    roller_contact : array, shape (positions, rollers)
-        In its bore under each roller, crank after crank.
-    hole_contact : array, shape (positions, z_PS)
-        In each hole wall under its shaft pin.
+        Along each hole wall, and where, the same.
+    pin_contact, roller_contact, hole_contact : array, shape (positions, pairs)
+        Along the wall under each wheel pin, roller (crank after crank) and shaft pin, or where it would touch if it is open; the
+        contact's own pressure is left out.
     """
 
     root: FloatArray
@@ -91,10 +81,11 @@ class WallStresses:
     hole_contact: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _PlacedContacts(WallContacts):
-    """Contacts of one wall with what decides how near they are."""
+class _PlacedContacts(NamedTuple):
+    """Contacts of one wall, arrays (positions, contacts): places, rad, loads into the disc, N, and how near they are, mm."""
 
+    parameter: FloatArray
+    load: FloatArray
     points: ComplexArray
     half_width: FloatArray
 
@@ -159,12 +150,10 @@ def _place_contacts(
         (holes.shape[1], holes, response.hole_load, hole_points, pressures.holes),
     )
     return tuple(
-        _PlacedContacts(parameter=parameter, load=load, points=points, half_width=half_width)
+        _PlacedContacts(*of_wall)
         for walls, *each, pressed in kinds
         if walls
-        for parameter, load, points, half_width in zip(
-            *(np.split(one, walls, axis=1) for one in (*each, pressed.half_width)), strict=True
-        )
+        for of_wall in zip(*(np.split(one, walls, axis=1) for one in (*each, pressed.half_width)), strict=True)
     )
 
 
@@ -175,7 +164,7 @@ def _profiles(
     place = model.geometry.placement
     centres = np.concatenate((place.bore_centres, place.hole_centres))
     radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
-    stress = evaluate_wall_stress(coefficients, placed)
+    stress = evaluate_wall_stress(coefficients, [(own.parameter, own.load) for own in placed])
     profiles = []
     for number, (wall, own) in enumerate(zip(coefficients.walls, placed, strict=True)):
         parameter = wall.parameters(refinement)

@@ -58,7 +58,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     if each.tilts is not None:
         found = at.slices_after(disc)
         leaning = tuple(
-            LeaningPairs(tilt=tilt, contact=contact)
+            LeaningPairs(tilt=tilt, contact=contact.kept)
             for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
         )
     return DiscResponse(

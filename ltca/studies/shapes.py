@@ -28,7 +28,7 @@ from ltca.compliance.coefficient_files import (
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.ring import derive_beforehand, expected_ring_seconds, has_ring
+from ltca.compliance.ring import expected_ring_seconds, has_ring, known_ring
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
@@ -127,7 +127,7 @@ def find_rings_beforehand(rings: Mapping[str, Drive], told: Callable[[str], None
     failures = []
     for drive in missing:
         try:
-            derive_beforehand(drive)
+            known_ring(drive)
         except CycloError as error:
             failures.append(error)
     if len(failures) == len(rings):

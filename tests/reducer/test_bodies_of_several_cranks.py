@@ -10,9 +10,9 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import BodyPlaces, load_coefficients, without_coupling
+from ltca.compliance.coefficients import BodyPlaces, load_coefficients
 from ltca.compliance.response import bearing_pushes
-from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
+from ltca.compliance.stress_coefficients import StressCoefficients, evaluate_wall_stress
 from ltca.compliance.wall_stress import wall_profiles
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import single_discs
@@ -25,7 +25,7 @@ from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
-from ltca.testing.closed_form_bodies import closed_form_coefficients
+from ltca.testing.closed_form_bodies import closed_form_coefficients, without_coupling
 
 pytestmark = pytest.mark.slow
 
@@ -208,9 +208,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
     np.testing.assert_allclose(matrix, np.outer(metal, metal), rtol=1e-5)
     # stresses likewise, by a newton on every contact
     walls = [theta, *np.split(bore, 3, axis=1), *np.split(hole, max(1, holes), axis=1)][: len(stations)]
-    stress = evaluate_wall_stress(
-        found.stress, tuple(WallContacts(parameter=own, load=np.ones_like(own)) for own in walls)
-    )
+    stress = evaluate_wall_stress(found.stress, [(own, np.ones_like(own)) for own in walls])
     for centre, radius, wall in zip(
         np.concatenate((disc.bore_centres, disc.hole_centres)), radii, found.stress.walls[1:], strict=True
     ):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import BodyPlaces, without_coupling
+from ltca.compliance.coefficients import BodyPlaces
 from ltca.drive.parts import part_turn
 from ltca.drive.single_discs import equal_parts, nominal_shape, single_discs
 from ltca.geometry.boundary_stations import Boundary
@@ -15,6 +15,7 @@ from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import without_coupling
 
 
 @pytest.mark.parametrize(("teeth", "holes"), [(13, 8), (14, 8), (15, 6), (39, 8), (3, 3), (59, 10), (12, 6)])

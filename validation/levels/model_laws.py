@@ -10,11 +10,12 @@ import numpy as np
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficients import BodyPlaces, InfluenceCoefficients, without_coupling
+from ltca.compliance.coefficients import BodyPlaces, InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare.comparison import compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row

@@ -10,12 +10,12 @@ import pytest
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.arrays import stack_drives
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.reading.changes import with_fields
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = np.array([0.5, 2.0])
 STEEL, ALUMINIUM = (206_000.0, 0.3), (70_000.0, 0.33)
@@ -225,7 +225,9 @@ def test_holes_in_batches(drive):
     drives = [drive, with_fields(drive, {"pin_shaft.pin_radius": 9.9, "clearance.pin_hole": 0.0})]
     batch = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], ANGLES.size)
     moments = np.repeat([own.wheel_moment() for own in drives], ANGLES.size)
-    found = batch.pressures(solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response).holes
+    found = batch.pressures(
+        solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response.parts[0]
+    ).holes
     alone = [analyse(own, ANGLES).pressures.holes for own in drives]
     for field in ("mid", "largest", "half_width"):
         expected = np.concatenate([getattr(holes, field) for holes in alone])

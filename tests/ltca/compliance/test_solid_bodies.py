@@ -198,9 +198,8 @@ def displaced(model, pin, approach, tilt):
     centres[pin] += approach
     leans[pin] += tilt
     moved = replace(place, wheel_pin_centres=centres, wheel_pin_leans=leans)
-    return replace(
-        model, discs=(replace(disc, contacts=replace(disc.contacts, geometry=replace(disc.geometry, placement=moved))),)
-    )
+    contacts = replace(disc.contacts, geometry=replace(disc.geometry, placement=moved))
+    return replace(model, discs=(replace(disc, contacts=contacts),))
 
 
 def test_loads_and_moments_are_slopes_of_one_energy(hold_coefficients):
@@ -268,7 +267,7 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
     disc = tilting_scaled(CoupledCompliance.of_drive(drive, solid(drive), "half-space"), 2.0)
     _, found = balanced(drive, disc)
     response, pose = found.response.parts[0], found.pose
-    geometry, laws = disc.geometry, disc.near_field
+    geometry, laws = disc.geometry, disc.contacts
     flank, holes = geometry.flank(ANGLES, pose), geometry.holes(ANGLES, pose)
     tilts = geometry.flank_tilt(ANGLES, pose, flank).tilt, geometry.hole_tilt(pose, holes).tilt
     bores, rays = geometry.bores(ANGLES, pose), geometry.rollers(ANGLES)
@@ -288,9 +287,9 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
     for _ in range(400):
         arm = (rays.outermost - inward) * rays.direction - displacement
         cosine = dot(arm, rays.direction) / np.abs(arm)
-        pins = carried(laws.pin, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
+        pins = carried(laws.pin_law, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
         outer = carried(
-            laws.outer,
+            laws.outer_law,
             np.abs(arm) - rays.bore_play - y[1],
             lean - at_bore - t[1],
             disc.geometry.placement.outer_effective_radii,
@@ -298,7 +297,9 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
         on_holes = carried(
             disc.hole_law, holes.approach - y[2], tilts[1] - t[2], disc.geometry.placement.hole_effective_radii
         )
-        inner = carried(laws.inner, inward - y[3], at_race - lean - t[3], disc.geometry.placement.inner_effective_radii)
+        inner = carried(
+            laws.inner_law, inward - y[3], at_race - lean - t[3], disc.geometry.placement.inner_effective_radii
+        )
         contacts = pins, outer, on_holes, inner
         loads, moments = (tuple(getattr(one, name) for one in contacts) for name in ("load", "moment"))
         # What turns and moves a roller inward, and how that grows as it does.

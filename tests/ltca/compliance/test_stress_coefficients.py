@@ -11,7 +11,7 @@ from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance import wall_stress
 from ltca.compliance.coefficients import load_coefficients
-from ltca.compliance.stress_coefficients import WallContacts, evaluate_wall_stress
+from ltca.compliance.stress_coefficients import evaluate_wall_stress
 from ltca.compliance.wall_stress import CLEAR_HALF_WIDTHS, wall_profiles, wall_stresses
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear
 from ltca.errors import CycloError
@@ -66,11 +66,13 @@ def analysis(drive, coefficients):
 
 
 def stresses_of(analysis):
-    return wall_stresses(analysis.model.discs[0], analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
+    return wall_stresses(
+        analysis.model.discs[0], analysis.full.response.parts[0], analysis.pressures, analysis.full.pose[:, 2]
+    )
 
 
 def profiles_of(analysis, **options):
-    arguments = (analysis.model.discs[0], analysis.full.response, analysis.pressures, analysis.full.pose[:, 2])
+    arguments = (analysis.model.discs[0], analysis.full.response.parts[0], analysis.pressures, analysis.full.pose[:, 2])
     return wall_profiles(*arguments, **options)
 
 
@@ -94,19 +96,18 @@ def test_stress_is_that_of_the_places_between_stations(coefficients):
     stress = coefficients.stress
     rng = np.random.default_rng(11)
     contacts = tuple(
-        WallContacts(parameter=rng.uniform(-7.0, 7.0, (2, n)), load=rng.uniform(0.0, 1e3, (2, n)))
-        for n in (5, 4, *[1] * len(coefficients.holes))
+        (rng.uniform(-7.0, 7.0, (2, n)), rng.uniform(0.0, 1e3, (2, n))) for n in (5, 4, *[1] * len(coefficients.holes))
     )
     found = evaluate_wall_stress(stress, contacts)
     expected = np.zeros_like(found)
     for number, wall in enumerate(stress.walls):
         rows = slice(wall.first, wall.first + wall.count)
-        for other, own in enumerate(contacts):
-            each = smooth_stress(number, wall.parameters()[:, None], other, own.parameter[:, None, :])
-            expected[:, rows] += np.sum(own.load[:, None, :] * each, axis=-1)
+        for other, (parameter, load) in enumerate(contacts):
+            each = smooth_stress(number, wall.parameters()[:, None], other, parameter[:, None, :])
+            expected[:, rows] += np.sum(load[:, None, :] * each, axis=-1)
     # Six points on waves of order two, of which a hole's 8 stations have four each: 0.2 % (measured).
     np.testing.assert_allclose(found, expected, atol=5e-3 * np.abs(expected).max())
-    doubled = tuple(replace(own, load=2.0 * own.load) for own in contacts)
+    doubled = [(parameter, 2.0 * load) for parameter, load in contacts]
     np.testing.assert_allclose(evaluate_wall_stress(stress, doubled), 2.0 * found, rtol=1e-12)
 
 
@@ -164,7 +165,7 @@ def test_nothing_clear_is_no_number(analysis):
     """Contacts as wide as the wall: there is nothing left to report there."""
     wide = replace(analysis.pressures.pins, half_width=np.full_like(analysis.pressures.pins.half_width, 1e3))
     pressures = replace(analysis.pressures, pins=wide)
-    found = wall_stresses(analysis.model.discs[0], analysis.full.response, pressures, analysis.full.pose[:, 2])
+    found = wall_stresses(analysis.model.discs[0], analysis.full.response.parts[0], pressures, analysis.full.pose[:, 2])
     assert np.all(np.isnan(found.root))
     assert np.all(np.isnan(found.root_parameter))
     assert np.all(np.isfinite(found.bore))
