@@ -79,8 +79,8 @@ def find_coefficients(
     """Return the coefficients of a drive of one disc: from one of some files of ``cyclo derive``, or, without files, those that
     are kept or newly derived.
 
-    Raises `CycloError` when no file fits the drive, the near field that they are wanted for cannot represent the drive, or nothing
-    is installed that derives.
+    Raises `CycloError` when no file fits the drive, the near field that they are wanted for cannot represent the drive, or
+    nothing is installed that derives.
     """
     require(drive, _ENGINES[near_field])
     if files is not None:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
-from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
+from ltca.compliance.pressures import pressures_in_plane, pressures_in_slices
 from ltca.compliance.response import ContactPressures, DiscContacts, DiscResponse
 from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
@@ -28,6 +28,7 @@ from ltca.laws.backed import (
     tip_motion,
     wheel_pin_seat,
 )
+from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import law_for_profile
 from ltca.laws.spring import SpringLaw
 
@@ -42,7 +43,6 @@ sharper than the 180th part of a lobe."""
 class HalfSpaceCompliance(DiscContacts):
     """Half-space laws for pins and rollers, springs for the pin holes (the paper's model)."""
 
-    grids_can_check: ClassVar[bool] = True
     coefficients: ClassVar[None] = None
 
     @classmethod
@@ -109,20 +109,15 @@ class HalfSpaceCompliance(DiscContacts):
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
-        place, kinds, rollers, flank = self.geometry.placement, self.kinds, response.rollers, response.flank
+        place, kinds, rollers = self.geometry.placement, self.kinds, response.rollers
         if response.leaning_pins is not None:
             spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SeparateSlices)
             return pressures_in_slices(
                 response, kinds, place, rigid_shaft_pins=self.rigid_shaft_pins, shaft_pins_on_springs=spring
             )
-        _, outer_radius, _, inner_radius = self.contact_laws
-        return ContactPressures(
-            pins=pressures_of_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
-            outer=pressures_of_law(self.outer_law, kinds.outer, rollers.outer_approach, outer_radius),
-            inner=pressures_of_law(self.inner_law, kinds.inner, rollers.inner_approach, inner_radius),
-            holes=elastic_hole_pressures(kinds.holes, response.hole_load, place),
-            rigid_shaft_pins=self.rigid_shaft_pins,
-        )
+        holes = LineContactLaw(kinds.holes.length, kinds.holes.contact_modulus)
+        contacts, pins = replace(self, hole_law=holes), response.flank.approach
+        return pressures_in_plane(contacts, response, pins, rollers.outer_approach, rollers.inner_approach)
 
 
 def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = None) -> Any:

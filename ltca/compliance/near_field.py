@@ -120,22 +120,28 @@ def plane_strain_datum(drive: Drive) -> float:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnParts:
-    """Body parts of contacts by themselves: what FE has beyond the near field of each contact.
+class BodyParts:
+    """What the bodies of a disc yield beyond the near fields of contacts: of approaches by loads, mm/N, or of tilts by moments,
+    rad/(N·mm).
 
     Attributes
     ----------
-    pin, outer, inner, hole : float
-        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner), mm/N.
-    tilting : OwnParts or None
-        The same of tilts by moments, rad/(N·mm), of solid bodies.
+    coefficients : InfluenceCoefficients
+        Between the contacts.
+    pin, outer, hole : float
+        What each contact of the disc yields by itself, added to the interpolated diagonal; `hole` with the spring behind it.
+    race : array, shape (rollers, rollers)
+        Between the inner contacts of the rollers, which feel those on their own race alone, with that of each by itself.
+    unit : float
+        Square of what tilts are multiplied by, mm², 1 for approaches.
     """
 
+    coefficients: InfluenceCoefficients
     pin: float
     outer: float
-    inner: float
     hole: float
-    tilting: OwnParts | None = None
+    race: FloatArray
+    unit: float
 
     @classmethod
     def of_drive(
@@ -146,12 +152,14 @@ class OwnParts:
         near_field: NearField,
         *,
         elastic_shaft_pins: bool,
-        tilts: bool = False,
-    ) -> OwnParts:
+        hole_spring: float,
+        tilts: bool,
+    ) -> BodyParts:
         """Return the parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length.
 
         Rollers of the `coefficients` are as long as they are (`InfluenceCoefficients.with_roller_length`);
-        `elastic_shaft_pins` are bare ones that yield where the near field of the holes is.
+        `elastic_shaft_pins` are bare ones that yield where the near field of the holes is, `hole_spring` is what stands behind
+        that, mm/N, which is rigid against moments.
 
         Notes
         -----
@@ -221,11 +229,15 @@ class OwnParts:
         outer += float(c.roller[1, 1]) + remove(roller, parts.roller, *in_bore, length)
         inner = remove(c.race_logarithm, parts.inner_race, *on_race, thickness)
         inner += float(c.roller[0, 0]) + remove(roller, parts.roller, *on_race, length)
-        tilting = None
-        if c.tilting is not None:
-            given: dict[str, Any] = {"elastic_shaft_pins": elastic_shaft_pins, "tilts": True}
-            tilting = cls.of_drive(drive, geometry, c.tilting, near_field, **given)
-        return cls(pin=pin, outer=outer, inner=inner, hole=hole, tilting=tilting)
+        race = c.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
+        return cls(
+            coefficients=c,
+            pin=pin,
+            outer=outer,
+            hole=hole if tilts else hole + hole_spring,
+            race=race + inner * np.eye(race.shape[0]),
+            unit=(0.5 * thickness) ** 2 if tilts else 1.0,
+        )
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
@@ -256,8 +268,8 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
 def finite_length_approach(length: float, half_width: float) -> float:
     """Return the mean displacement of a half-space over a patch of finite length, times E/(1 − ν²) per load, 1/mm.
 
-    It is the pressure-weighted mean over the patch pressed by a straight cylinder of that length L, mm, with the half-width b, mm,
-    at mid-length: its approach less the mean separation.
+    It is the pressure-weighted mean over the patch pressed by a straight cylinder of that length L, mm, with the half-width b,
+    mm, at mid-length: its approach less the mean separation.
     """
     law = LineContactLaw(length, 1.0)
     # Newton's method on ln δ = ln b² + ln m(ln(δ/L²)) at a radius of 1: m = ρδ/b² goes from 0.5 to 10 over all of the law, so

@@ -341,10 +341,6 @@ class DiscModel(Protocol):
     def contact_laws(self) -> ContactLaws:
         """Laws of the contacts."""
 
-    @property
-    def grids_can_check(self) -> bool:
-        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
-
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return the pressures behind a response of this model."""
 
