@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
-from ltca.compliance.near_field import NEAR_FIELDS, NearField
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import single_discs
@@ -40,8 +39,6 @@ MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
-_ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
-"""What coefficients are wanted for."""
 
 
 def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
@@ -73,16 +70,16 @@ def find_coefficients(
     drive: Drive,
     files: Sequence[Path] | None = None,
     *,
-    near_field: NearField = "half-space",
+    engine: str = "hybrid",
     bodies: Bodies = "plane",
 ) -> InfluenceCoefficients:
     """Return the coefficients of a drive of one disc: from one of some files of ``cyclo derive``, or, without files, those that
     are kept or newly derived.
 
-    Raises `CycloError` when no file fits the drive, the near field that they are wanted for cannot represent the drive, or
-    nothing is installed that derives.
+    Raises `CycloError` when no file fits the drive, the engine (``fe`` or ``hybrid``) that they are wanted for cannot represent
+    the drive, or nothing is installed that derives.
     """
-    require(drive, _ENGINES[near_field])
+    require(drive, engine)
     if files is not None:
         return _load_first_that_fits(files, drive, bodies)[1]
     return _kept_or_derived({drive.name: drive}, bodies)[drive.name]
@@ -92,7 +89,7 @@ def find_case_coefficients(
     cases: Mapping[str, Drive],
     files: Sequence[Path] = (),
     *,
-    near_field: NearField = "half-space",
+    engine: str = "hybrid",
     bodies: Bodies = "plane",
 ) -> dict[str, InfluenceCoefficients]:
     """Return the coefficients by case, of several discs by case and disc; those of each distinct shape are derived once.
@@ -101,7 +98,7 @@ def find_case_coefficients(
     before anything is derived.
     """
     for drive in cases.values():
-        require(drive, _ENGINES[near_field])
+        require(drive, engine)
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files, bodies)
@@ -203,14 +200,14 @@ def derivation_words(drives: Iterable[Drive], bodies: Bodies, at_once: int = 1) 
 
 def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
-    missing: dict[Path, str] = {}
+    shapes: dict[str, str] = {}
     for name, drive in cases.items():
-        missing.setdefault(cached_file(drive, bodies), name)
-    if not missing:
+        shapes.setdefault(file_name(drive, bodies), name)
+    if not shapes:
         return
     derivation()
     require_cache()
-    missing = {cache_folder() / file_name(cases[name], bodies): name for name in missing.values()}
+    missing = {cache_folder() / file: name for file, name in shapes.items()}
     whole = derivation_words((cases[name] for name in missing.values()), bodies, _processes(len(missing), bodies))
     most = max(derivation_memory(cases[name].disc.number_of_teeth) for name in missing.values())
     # What solid bodies need is told by what derives them.

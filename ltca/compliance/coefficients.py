@@ -285,7 +285,7 @@ def load_coefficients(
         When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
     data = read_coefficients(path, lawful=lawful)
-    own = bodies_of(data)
+    own: Bodies = "solid" if is_solid(data) else "plane"
     if bodies not in (None, own):
         raise CycloError(f"{path}: holds coefficients of {own} bodies, not of {bodies} ones: give --bodies {own}")
     shared = require_same_bodies(path, data, drive)
@@ -304,11 +304,6 @@ def load_coefficients(
         code_hash=str(data.attrs.get("code_hash", "")),
         warning=quality_warning(data, str(path)),
     )
-
-
-def bodies_of(data: Labelled) -> Bodies:
-    """Return what bodies a file is of."""
-    return "solid" if is_solid(data) else "plane"
 
 
 def _coefficients_of_dataset(
@@ -349,7 +344,7 @@ def _coefficients_of_dataset(
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
     race = approach("race") + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
     return InfluenceCoefficients(
-        fingerprint=drive.shape_fingerprint(bodies_of(data)),
+        fingerprint=drive.shape_fingerprint("solid" if plane == SOLID else "plane"),
         shared=shared,
         plane=plane,
         thickness=thickness,

@@ -40,14 +40,10 @@ class WallProfile:
     stress: FloatArray
     clear: NDArray[np.bool_]
 
-    def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> tuple[FloatArray, FloatArray]:
-        """Return the largest clear stress of each position and its parameter among some places; not a number where none is."""
-        parameter = self.parameter[places]
-        stress = np.where(self.clear[:, places], self.stress[:, places], -np.inf)
-        best = np.argmax(stress, axis=1)
-        value = np.take_along_axis(stress, best[:, None], axis=1)[:, 0]
-        found = np.isfinite(value)
-        return np.where(found, value, np.nan), np.where(found, parameter[best], np.nan)
+    def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> FloatArray:
+        """Return the largest clear stress of each position among some places; not a number where none is clear."""
+        best = np.max(np.where(self.clear[:, places], self.stress[:, places], -np.inf), axis=1)
+        return np.where(np.isfinite(best), best, np.nan)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,23 +55,20 @@ class WallStresses:
 
     Attributes
     ----------
-    root, root_parameter : array, shape (positions, lobes)
-        Along the flank about each lobe root, from crest to crest, and where, θ, rad. Root k lies at θ = 2πk/z_C.
-    bore, bore_parameter : array, shape (positions,)
-        Along the bore, the largest of several bores, and where, polar angle in the disc frame about its centre, rad.
-    hole, hole_parameter : array, shape (positions, z_PS)
-        Along each hole wall, and where, the same.
+    root : array, shape (positions, lobes)
+        Along the flank about each lobe root, from crest to crest. Root k lies at θ = 2πk/z_C.
+    bore : array, shape (positions,)
+        Along the bore, the largest of several bores.
+    hole : array, shape (positions, z_PS)
+        Along each hole wall.
     pin_contact, roller_contact, hole_contact : array, shape (positions, pairs)
         Along the wall under each wheel pin, roller (crank after crank) and shaft pin, or where it would touch if it is open; the
         contact's own pressure is left out.
     """
 
     root: FloatArray
-    root_parameter: FloatArray
     bore: FloatArray
-    bore_parameter: FloatArray
     hole: FloatArray
-    hole_parameter: FloatArray
     pin_contact: FloatArray
     roller_contact: FloatArray
     hole_contact: FloatArray
@@ -98,9 +91,14 @@ def wall_stresses(
     The rotation of the disc, rad, has shape (positions,).
     """
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
-    stress = _stress_coefficients(model)
+    stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
-        return _unknown(response, lobes)
+        loads = response.pin_load, response.rollers.outer_load, response.hole_load
+        pins, rollers, holes = (np.full(load.shape, np.nan) for load in loads)
+        roots = np.full((positions, lobes), np.nan)
+        return WallStresses(
+            root=roots, bore=roots[:, 0], hole=holes, pin_contact=pins, roller_contact=rollers, hole_contact=holes
+        )
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
         _reduce(model, stress, take_positions(placed, rows), lobes)
@@ -121,15 +119,10 @@ def wall_profiles(
 
     Arguments are those of `wall_stresses`; of so many places per stress station the first lies on it.
     """
-    stress = _stress_coefficients(model)
+    stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
         return ()
     return _profiles(model, stress, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
-
-
-def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
-    """Return the stress coefficients of a disc; None where it has none, or no body."""
-    return None if model.coefficients is None else model.coefficients.stress
 
 
 def _place_contacts(
@@ -187,41 +180,16 @@ def _reduce(
     profiles, stress = _profiles(model, coefficients, placed, REFINEMENT)
     flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
-    roots = [flank.largest(nearest == root) for root in range(lobes)]
-    values, places = (np.stack(found, axis=1) for found in zip(*(wall.largest() for wall in round_walls), strict=True))
-    cranks = model.geometry.placement.cranks
-    worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
-    under = []
+    walls = np.stack([wall.largest() for wall in round_walls], axis=1)
+    cranks, rows, under = model.geometry.placement.cranks, np.arange(stress.shape[0])[:, None, None], []
     for wall, own in zip(coefficients.walls, placed, strict=True):
         stations, weights = wall.weights(own.parameter)
-        rows = np.arange(stress.shape[0])[:, None, None]
         under.append(np.sum(stress[rows, stations] * weights, axis=-1))
     return WallStresses(
-        root=np.stack([value for value, _ in roots], axis=1),
-        root_parameter=np.stack([parameter for _, parameter in roots], axis=1),
-        bore=np.take_along_axis(values, worst, axis=1)[:, 0],
-        bore_parameter=np.take_along_axis(places, worst, axis=1)[:, 0],
-        hole=values[:, cranks:],
-        hole_parameter=places[:, cranks:],
+        root=np.stack([flank.largest(nearest == root) for root in range(lobes)], axis=1),
+        bore=np.fmax.reduce(walls[:, :cranks], axis=1),
+        hole=walls[:, cranks:],
         pin_contact=under[0],
         roller_contact=np.concatenate(under[1 : 1 + cranks], axis=1),
         hole_contact=np.concatenate([np.zeros((len(stress), 0)), *under[1 + cranks :]], axis=1),
-    )
-
-
-def _unknown(response: DiscResponse, lobes: int) -> WallStresses:
-    pins, rollers, holes = (
-        np.full(load.shape, np.nan) for load in (response.pin_load, response.rollers.outer_load, response.hole_load)
-    )
-    roots = np.full((len(response.pin_load), lobes), np.nan)
-    return WallStresses(
-        root=roots,
-        root_parameter=roots,
-        bore=roots[:, 0],
-        bore_parameter=roots[:, 0],
-        hole=holes,
-        hole_parameter=holes,
-        pin_contact=pins,
-        roller_contact=rollers,
-        hole_contact=holes,
     )

@@ -27,7 +27,6 @@ from ltca.compliance.coefficient_files import (
     told_seconds,
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.near_field import NEAR_FIELDS
 from ltca.compliance.ring import expected_ring_seconds, has_ring, known_ring
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Bodies, Drive
@@ -159,8 +158,7 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
             }
             # Several at once; what fails is tried again alone below.
             with suppress(CycloError):
-                near_field = NEAR_FIELDS[engine.compliance]
-                find_case_coefficients(group, near_field=near_field, bodies=engine.bodies)
+                find_case_coefficients(group, engine=engine.compliance, bodies=engine.bodies)
         wanted = missing or wanted[:1]
     failures, found = [], list[InfluenceCoefficients]()
     for drive in wanted:

@@ -153,7 +153,7 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     bores, cranks = found.bore[:, None], model.geometry.placement.cranks
     if cranks > 1:  # the largest of all bores would hide the others
         walls = wall_profiles(model, full.response.parts[0], analysis.pressures, rotation)[1 : 1 + cranks]
-        bores = np.stack([wall.largest()[0] for wall in walls], axis=1)
+        bores = np.stack([wall.largest() for wall in walls], axis=1)
     return [
         DiscStressAnswer(
             parameter=tuple(wall.parameter for wall in profiles),

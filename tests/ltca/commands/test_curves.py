@@ -340,7 +340,7 @@ def test_compliance_is_passed_on(monkeypatch, tmp_path):
         return without_coupling(drive)
 
     monkeypatch.setattr(engines, "find_coefficients", nothing)
-    monkeypatch.setattr(coefficient_files, "find_case_coefficients", lambda cases, files, near_field, bodies: {})
+    monkeypatch.setattr(coefficient_files, "find_case_coefficients", lambda cases, files, engine, bodies: {})
     words = ["--case", CASE, "--compliance", "hybrid"]
     hybrid = coarse_curves(monkeypatch, tmp_path / "hybrid", *words, "--no-hole-near-field")
     assert len(asked) == 1
