@@ -121,23 +121,10 @@ class CoupledCompliance:
         *,
         hole_near_field: bool = True,
     ) -> CoupledCompliance:
-        """Return the coupled model of a drive.
+        """Return the coupled model of a drive of one disc by coefficients of its bodies.
 
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        coefficients : InfluenceCoefficients
-            Of this drive.
-        near_field : {"plane-strain", "half-space"}
-            Plane strain, or half-spaces of finite length with the profiles of rollers and pins.
-        hole_near_field : bool
-            Whether holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all.
-
-        Raises
-        ------
-        DriveError
-            When the coefficients are those of other bodies, or plane strain cannot say what the drive has.
+        With `hole_near_field` holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all. Raises
+        `DriveError` when the coefficients are those of other bodies, or plane strain cannot represent the drive.
         """
         fingerprint = drive.shape_fingerprint(coefficients.bodies)
         if coefficients.fingerprint != fingerprint:

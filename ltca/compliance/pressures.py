@@ -1,13 +1,9 @@
 """Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their loads.
 
-A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the
-disc, Hertz's as long as its half-width is small against the pin. Who yields there is what the model's load law says:
-
-- The pin on a spring alone (half-space models, and the others without the near field of the hole): the spring says
-  nothing of the contact, so the pressure is that of the real materials, E* of disc and shaft pin.
-- The pin that yields at its contact, ``pin_shaft.elastic_contact`` (``fe`` and ``hybrid``, as in full FE): E* of both.
-- A rigid pin against the yielding wall, where that field is false: E* of the disc alone. For a pin of the disc's
-  material that is √2 of the other at the same load, on the safe side.
+A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the disc,
+Hertz's as long as its half-width is small against the pin. Where a spring stands for all that yields there, and for elastic
+pins of ``fe`` and ``hybrid``, E* is that of disc and shaft pin; where ``pin_shaft.elastic_contact`` is false it is that of the
+disc alone, √2 of the other pressure for a pin of the disc's material, on the safe side.
 """
 
 from __future__ import annotations

@@ -42,17 +42,12 @@ MAX_KNOWN = 16
 
 
 def ring_flexibility(drive: Drive, lender: Drive | None = None) -> FloatArray | None:
-    """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
+    """Return displacements of the seats of the wheel pins of a drive under unit forces there, mm/N; None where the ring is rigid.
 
-    Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced: errors
-    of single seats are far too small to matter here. A ring of finite elements has the shape of that of the `lender`, if one is
-    given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`); modulus, width and stiffness of the bolts
-    are its own.
-
-    Raises
-    ------
-    CycloError
-        When the ring is of finite elements and nothing is installed that derives them.
+    Shape (z_P, 2, z_P, 2) by seat and component in the wheel; seats are evenly spaced. A ring of finite elements has the shape
+    of that of the `lender`, if one is given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`);
+    modulus, width and stiffness of the bolts are its own. Raises `CycloError` where it has to be derived and nothing is
+    installed for that.
     """
     if not has_ring_of_elements(drive):
         return beam_flexibility(drive)
