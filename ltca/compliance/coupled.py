@@ -24,12 +24,7 @@ from ltca.compliance.coefficients import SOLID, BodyPlaces, InfluenceCoefficient
 from ltca.compliance.half_space import shaft_pin_springs
 from ltca.compliance.near_field import BodyParts, NearField, near_field_contacts, plane_strain_datum
 from ltca.compliance.pressures import pressures_in_plane, pressures_in_slices
-from ltca.compliance.response import (
-    ContactLaws,
-    ContactPressures,
-    DiscContacts,
-    DiscResponse,
-)
+from ltca.compliance.response import ContactLaws, ContactPressures, DiscContacts, DiscResponse
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam
@@ -65,14 +60,9 @@ class BodyFlexibility:
         first = np.cumsum((0, *self.counts[:2]))
         columns = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
         found, own = self.parts.coefficients.disc_matrix(self.places.take(columns)), np.arange(columns.shape[1])
-        found[:, own, own] += np.repeat(self._alone, [some.shape[1] for some in self.loaded])
+        found[:, own, own] += np.repeat(self.parts.alone, [some.shape[1] for some in self.loaded])
         found *= self.parts.unit
         return found
-
-    @property
-    def _alone(self) -> tuple[float, float, float]:
-        """What a pin, a roller in its bore and a hole yield alone, beyond the coefficients."""
-        return self.parts.pin, self.parts.outer, self.parts.hole
 
     @property
     def on_race(self) -> FloatArray:
@@ -88,7 +78,7 @@ class BodyFlexibility:
     def taken(self, load: FloatArray) -> FloatArray:
         """What pins, rollers in the bores and holes take by the loads of all of them, shape (positions, contacts)."""
         together = self.parts.coefficients.disc_approach(self.places, load)
-        return np.asarray(self.parts.unit * (together + np.repeat(self._alone, self.counts) * load))
+        return np.asarray(self.parts.unit * (together + np.repeat(self.parts.alone, self.counts) * load))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,12 +118,8 @@ class CoupledCompliance:
         """
         fingerprint = drive.shape_fingerprint(coefficients.bodies)
         if coefficients.fingerprint != fingerprint:
-            raise DriveError(
-                [
-                    f"influence coefficients of the shape {coefficients.fingerprint}: must be those of {drive.name}, shape "
-                    f"{fingerprint}"
-                ]
-            )
+            other = f"influence coefficients of the shape {coefficients.fingerprint}"
+            raise DriveError([f"{other}: must be those of {drive.name}, shape {fingerprint}"])
         yields = hole_near_field and shaft_pins_yield(drive)
         contacts = near_field_contacts(
             drive,

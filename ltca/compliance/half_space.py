@@ -83,10 +83,8 @@ class HalfSpaceCompliance(DiscContacts):
             return law(kind, bearing.roller_profile, bearing.roller_radius, radii)
 
         pins = law(kinds.pins, wheel.pin_profile, wheel.pin_radius, pin_radii, wheel)
-        if slices == 1:
-            pins = back_wheel_pins(drive, pins, place.wheel_pin_plays)
-        else:
-            pins = sliced.back_line(pins, wheel_pin_seat(drive), place.wheel_pin_plays)
+        pins = behind_wheel_pins(drive, pins, place.wheel_pin_plays)
+        if slices > 1:
             # The law has the lead, in which drives of a batch may differ.
             kinds = replace(kinds, pins=replace(kinds.pins, lead=None))
         if slices > 1 and shaft_pin_beam(drive) is not None:
@@ -136,6 +134,13 @@ def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = No
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def behind_wheel_pins(drive: Drive, law: Any, play: FloatArray, depth: float | None = None) -> Any:
+    """Return the law of wheel pins and flank with what is behind the contacts (`ltca.laws.backed`); in slices beams are not."""
+    if drive.contact.slices == 1:
+        return back_wheel_pins(drive, law, play, depth)
+    return sliced.back_line(law, wheel_pin_seat(drive), play)
 
 
 def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:

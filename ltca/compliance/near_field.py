@@ -22,7 +22,7 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
-from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
+from ltca.compliance.half_space import HalfSpaceCompliance, behind_wheel_pins, hole_in_slices
 from ltca.compliance.response import DiscContacts
 from ltca.compliance.solid_cylinder import free_ends_of_cylinder
 from ltca.contact.contact_kind import ContactKinds
@@ -34,7 +34,7 @@ from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulu
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import BackedLaw, back_wheel_pins, shaft_pin_seat, sleeve_overlap, tip_motion, wheel_pin_seat
+from ltca.laws.backed import BackedLaw, shaft_pin_seat, sleeve_overlap, tip_motion
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
@@ -95,14 +95,11 @@ def near_field_contacts(drive: Drive, kind: NearField, *, rigid_shaft_pins: bool
 
     flank, hole = law(contact_modulus(parts.disc, drive.flank_pin), drive.pin_wheel), law(modulus, drive.pin_shaft)
     place = geometry.placement
-    if slices == 1:
-        flank = back_wheel_pins(drive, flank, place.wheel_pin_plays, datum)
-    else:
-        flank = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
+    if slices > 1:
         hole = sliced.back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays)
     return DiscContacts(
         geometry=replace(geometry, **tip_motion(drive)),
-        pin_law=flank,
+        pin_law=behind_wheel_pins(drive, flank, place.wheel_pin_plays, datum),
         outer_law=law(contact_modulus(parts.disc, parts.roller)),
         inner_law=law(contact_modulus(parts.inner_race, parts.roller)),
         hole_law=hole,
@@ -128,8 +125,8 @@ class BodyParts:
     ----------
     coefficients : InfluenceCoefficients
         Between the contacts.
-    pin, outer, hole : float
-        What each contact of the disc yields by itself, added to the interpolated diagonal; `hole` with the spring behind it.
+    alone : array, shape (3,)
+        What a pin, a roller in its bore and a hole with the spring behind it yield by themselves, added to the diagonal.
     race : array, shape (rollers, rollers)
         Between the inner contacts of the rollers, which feel those on their own race alone, with that of each by itself.
     unit : float
@@ -137,9 +134,7 @@ class BodyParts:
     """
 
     coefficients: InfluenceCoefficients
-    pin: float
-    outer: float
-    hole: float
+    alone: FloatArray
     race: FloatArray
     unit: float
 
@@ -232,9 +227,7 @@ class BodyParts:
         race = c.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
         return cls(
             coefficients=c,
-            pin=pin,
-            outer=outer,
-            hole=hole if tilts else hole + hole_spring,
+            alone=np.array((pin, outer, hole if tilts else hole + hole_spring)),
             race=race + inner * np.eye(race.shape[0]),
             unit=(0.5 * thickness) ** 2 if tilts else 1.0,
         )

@@ -121,7 +121,7 @@ def pair_approaches(
         nothing,
         place.cranks,
     )
-    body = np.diag(coefficients.disc_matrix(places)[0]) + model.bodies[0].pin
+    body = np.diag(coefficients.disc_matrix(places)[0]) + model.bodies[0].alone[0]
     near, _ = model.contacts.pin_law.approach_at_load(load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 

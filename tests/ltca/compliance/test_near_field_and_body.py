@@ -201,7 +201,7 @@ def test_what_is_taken_off_a_pin_is_the_patch_of_the_steepest_place(mixed, close
         [brentq(lambda near: float(law.half_width(np.array([near]), place)[0]) - width, low, high, xtol=1e-15)]
     )
     load = law.load_and_stiffness(near, place)[0]
-    own = np.diag(model.coefficients.disc)[0] + model.bodies[0].pin
+    own = np.diag(model.coefficients.disc)[0] + model.bodies[0].alone[0]
     sunk = near - width**2 / (8.0 * radius) + own * load
     expected = sum(
         half_plane_approach(load / thickness, width, DEPTH, *constants(body))

@@ -55,7 +55,7 @@ def tilting_scaled(model, scale):
     body = tilting.coefficients
     every = {name: scale * getattr(body, name) for name in ("disc", "pin", "roller", "race")}
     every |= {f"{name}_logarithm": scale * getattr(body, f"{name}_logarithm") for name in every}
-    own = {name: scale * getattr(tilting, name) for name in ("pin", "outer", "hole", "race")}
+    own = {name: scale * getattr(tilting, name) for name in ("alone", "race")}
     return replace(model, bodies=(even, replace(tilting, coefficients=replace(body, **every), **own)))
 
 
