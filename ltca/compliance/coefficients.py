@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
@@ -77,8 +78,8 @@ class BodyPlaces(NamedTuple):
 
     def take(self, columns: NDArray[np.intp]) -> BodyPlaces:
         """Return some of the contacts by their numbers, ascending, shape (positions, chosen)."""
-        wall, parameter, point = (np.take_along_axis(values, columns, axis=1) for values in self)
-        return BodyPlaces(wall, parameter, point)
+        pick = partial(np.take_along_axis, indices=columns, axis=1)
+        return BodyPlaces(pick(self.wall), pick(self.parameter), pick(self.point))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray
 from ltca.compliance.coefficients import SOLID, BodyPlaces, InfluenceCoefficients
 from ltca.compliance.half_space import shaft_pin_springs
-from ltca.compliance.near_field import BodyParts, NearField, near_field_contacts, plane_strain_datum
+from ltca.compliance.near_field import BodyParts, NearField, near_field_contacts, near_field_depth
 from ltca.compliance.pressures import pressures_in_plane, pressures_in_slices
 from ltca.compliance.response import ContactLaws, ContactPressures, DiscContacts, DiscResponse
 from ltca.drive.hole_contact import shaft_pins_yield
@@ -30,7 +30,7 @@ from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import HALF_SPACE_DATUM, back_shaft_pins, shaft_pin_stiffness
+from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness
 
 
 @dataclass(frozen=True)
@@ -129,15 +129,14 @@ class CoupledCompliance:
         )
         geometry, place = contacts.geometry, contacts.geometry.placement
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
-        slices, has_ends = drive.contact.slices, near_field == "half-space"
+        slices = drive.contact.slices
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
         at_hole = contacts.hole_law
         if not hole_near_field and not bends_behind:
             at_hole = shaft_pin_springs(drive, place.shaft_pin_plays)
         elif slices == 1:
-            depth = HALF_SPACE_DATUM * drive.disc.thickness if has_ends else plane_strain_datum(drive)
-            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, depth)
+            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, near_field_depth(drive, near_field))
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
         spring = 1.0 / shaft_pin_stiffness(drive) if hole_near_field and not bends_behind else 0.0
@@ -148,7 +147,7 @@ class CoupledCompliance:
             for each, tilts in ((body, False), (body.tilting, True))
             if each is not None
         ]
-        return cls(contacts=contacts, has_ends=has_ends, hole_law=at_hole, bodies=tuple(bodies))
+        return cls(contacts=contacts, has_ends=near_field == "half-space", hole_law=at_hole, bodies=tuple(bodies))
 
     @property
     def geometry(self) -> ContactGeometry:

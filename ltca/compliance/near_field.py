@@ -34,7 +34,7 @@ from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulu
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import BackedLaw, shaft_pin_seat, sleeve_overlap, tip_motion
+from ltca.laws.backed import HALF_SPACE_DATUM, BackedLaw, shaft_pin_seat, sleeve_overlap, tip_motion
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
@@ -114,6 +114,11 @@ def plane_strain_datum(drive: Drive) -> float:
     Only its logarithm enters, and cancels where the body part is in plane strain, too.
     """
     return max(drive.disc.thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
+
+
+def near_field_depth(drive: Drive, kind: NearField) -> float:
+    """Return the depth down to which the near field of a contact over the disc's thickness counts, mm."""
+    return HALF_SPACE_DATUM * drive.disc.thickness if kind == "half-space" else plane_strain_datum(drive)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
