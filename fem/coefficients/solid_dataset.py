@@ -120,7 +120,7 @@ class _Places:
         """Weights of the stations at parameters of boundaries, shape (places, stations), as the LTCA takes them."""
         teeth = round(self.shape.flank.profile.reduction_ratio) - 1
         curves = boundaries_of(self.stations.boundary, teeth, root_clustering(self.shape))
-        at, weights = weights_of([curves[number] for number in boundary.tolist()], parameter)
+        at, weights = weights_of(curves, boundary, parameter)
         rows = np.repeat(np.arange(len(parameter)), at.shape[-1])
         return sp.csr_matrix((weights.ravel(), (rows, at.ravel())), shape=(len(parameter), self.stations.count))
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.response import ContactPressures, DiscResponse
+from ltca.compliance.response import ContactPressures, DiscResponse, Response
 
 PARTS = {"pin": "wheel pin", "roller": "roller", "hole": "shaft pin", "lobe": "lobe"}
 """What the parts are called that a quantity belongs to (`ltca.quantities.Quantity.of`)."""
@@ -15,7 +15,7 @@ SIDES = ("_outer", "_inner")
 """Endings of names where a roller has a contact in the bore and one on the inner race."""
 
 
-def contact_arrays(contacts: DiscResponse, pressures: ContactPressures) -> dict[str, FloatArray]:
+def contact_arrays(contacts: Response | DiscResponse, pressures: ContactPressures) -> dict[str, FloatArray]:
     """Return loads, approaches, pressures and half-widths of all contacts, shape (positions, pairs)."""
     rollers = contacts.rollers
     arrays = {

@@ -356,8 +356,7 @@ class CoupledEngine:
     def with_coefficients_of(self, bodies: Sequence[Drive]) -> Self:
         """Return the engine with the coefficients of each of some drives of one disc."""
         files: Any = self.coefficients
-        near_field = NEAR_FIELDS[self.compliance]
-        found = tuple(find_coefficients(each, files, near_field=near_field, bodies=self.bodies) for each in bodies)
+        found = tuple(find_coefficients(each, files, engine=self.compliance, bodies=self.bodies) for each in bodies)
         return replace(self, coefficients=found[0] if len(found) == 1 else found)
 
     def lent_to(self, singles: Sequence[Drive]) -> Self:

@@ -247,7 +247,7 @@ def pin_deflections(drive: Drive, model: Reducer, found: Equilibrium) -> dict[st
 
     Drive, model and balanced positions are those of one disc; keys are names of the dataset, none where no pins are beams.
     """
-    contacts, geometry = found.response, model.discs[0].geometry
+    contacts, geometry = found.response.parts[0], model.discs[0].geometry
     moved, by_tips = split_shifts(contacts.shifts, geometry), geometry.moved_by_ring(found.pose)
     others = moved[0]
     if others is not None:

@@ -25,6 +25,7 @@ from ltca.analysis.run_off import few_slices_warning, run_off_warning, undivided
 from ltca.analysis.share_causes import share_words
 from ltca.arrays import ComplexArray, FloatArray, batch_layout, freeze, stack_drives, take_positions
 from ltca.compliance.coefficient_files import coefficient_warnings
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import ContactPressures
 from ltca.compliance.wall_stress import WallStresses, wall_stresses
 from ltca.drive.hole_contact import hole_words
@@ -333,7 +334,7 @@ class LoadedAnalysis:
         discs = self.discs if np.all(self.balanced) else ()
         for number, disc in enumerate(discs):
             (contacts,) = disc.model.discs
-            if contacts.grids_can_check:
+            if isinstance(contacts, HalfSpaceCompliance):
                 of = "" if len(discs) == 1 else f"disc {number}: "
                 told = separation_warning(contacts, disc.drive, disc.full, disc.pressures)
                 found.append(None if told is None else of + told)

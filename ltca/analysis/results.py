@@ -87,7 +87,7 @@ def _supports(analysis: LoadedAnalysis) -> dict[str, Any]:
 def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
     """Quantities of one disc on its eccentric: (position,), (position, pair) or (position, pair, slice)."""
     full, pressures = analysis.full, analysis.pressures
-    contacts = full.response
+    contacts = full.response.parts[0]
     place = analysis.model.discs[0].geometry.placement
     displacement = disc_displacement(full.pose) * place.eccentric_direction(full.crank_angle).conjugate()
     values = {
@@ -107,7 +107,7 @@ def _disc_values(analysis: LoadedAnalysis) -> dict[str, Any]:
 
 def _seat_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     """What loose pins, sleeves and bent pins of one disc have; nothing of fixed pins that do not bend."""
-    drive, contacts = analysis.drive, analysis.full.response
+    drive, contacts = analysis.drive, analysis.full.response.parts[0]
     place = analysis.model.discs[0].geometry.placement
     values: dict[str, FloatArray] = {}
     for name, seat, load, play, leaning in (

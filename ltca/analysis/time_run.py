@@ -6,7 +6,7 @@ dense output, of which samples evenly in time are kept. Contacts that close and 
 have vibrations up to some 10 kHz, and implicit methods are no cheaper at equal error (``benchmarks/integrators.py``).
 
 The balance of energy is that of input, output, damping, friction, of what is stored, and of the work of contacts that move to
-another radius of curvature or over bodies that yield otherwise there (`ltca.compliance.stored_energy`): their forces act along
+another radius of curvature or over bodies that yield otherwise there (`ltca.mechanics.energy`): their forces act along
 the normal alone.
 """
 
@@ -22,7 +22,6 @@ from scipy.integrate import DOP853
 
 from ltca.analysis.engines import Engine
 from ltca.arrays import FloatArray, named_arrays, with_named_arrays
-from ltca.compliance.stored_energy import StoredEnergy
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.dynamics.contact_forces import ContactForces
@@ -37,6 +36,7 @@ from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.errors import ConvergenceError, DamagedFileError, DriveError
+from ltca.mechanics.energy import StoredEnergy
 
 MOTIONS = {
     "steady": "the input turns evenly under the load",

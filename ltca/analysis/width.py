@@ -26,7 +26,7 @@ HEIGHTS = {"pin": "z_pin", "roller": "z_roller", "hole": "z_hole"}
 
 def width_values(analysis: LoadedAnalysis) -> dict[str, FloatArray]:
     """Return what one disc has along its width, (position, pair, slice), (position, pair) or (position, …, axis)."""
-    pressures, response = analysis.pressures, analysis.full.response
+    pressures, response = analysis.pressures, analysis.full.response.parts[0]
     pins, outer, inner, holes = (
         each.along for each in (pressures.pins, pressures.outer, pressures.inner, pressures.holes)
     )

@@ -192,8 +192,7 @@ def find_coefficients_of(
                 body.case if cases_of.count(body.case) == 1 else f"{body.case}, body {number}": body
                 for number, body in enumerate(bodies)
             }
-        near_field = NEAR_FIELDS[arguments.compliance]
         files = arguments.coefficients or ()
-        coefficients = find_case_coefficients(warm, files, near_field=near_field, bodies=engine.bodies)
+        coefficients = find_case_coefficients(warm, files, engine=arguments.compliance, bodies=engine.bodies)
         for text in coefficient_warnings(coefficients.values()) if warn else ():
             print(f"warning: {text}", file=sys.stderr)

@@ -1,8 +1,7 @@
 """Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
 
-`ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package
-`fem` does), so that `ltca` imports nothing to its right: a function of a drive, ``state`` or ``bodies``, ``store`` (what writes
-the result; of solid bodies alone) and ``processes`` (how
+`ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package `fem` does): a
+function of a drive, ``state`` or ``bodies``, ``store`` (what writes the result; of solid bodies alone) and ``processes`` (how
 many of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
 """
 
@@ -17,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
-from ltca.compliance.near_field import NEAR_FIELDS, NearField
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.single_discs import single_discs
@@ -41,8 +39,6 @@ MAX_DERIVATIONS = 2
 """Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
 SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
 """Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
-_ENGINES = {near_field: engine for engine, near_field in NEAR_FIELDS.items()}
-"""What coefficients are wanted for."""
 
 
 def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
@@ -74,33 +70,16 @@ def find_coefficients(
     drive: Drive,
     files: Sequence[Path] | None = None,
     *,
-    near_field: NearField = "half-space",
+    engine: str = "hybrid",
     bodies: Bodies = "plane",
 ) -> InfluenceCoefficients:
-    """Return the coefficients of a drive: from a file, from the cache, or newly derived and kept there.
+    """Return the coefficients of a drive of one disc: from one of some files of ``cyclo derive``, or, without files, those that
+    are kept or newly derived.
 
-    Parameters
-    ----------
-    drive : Drive
-        The drive; its load and single-part errors do not matter.
-    files : sequence of Path, optional
-        Files of ``cyclo derive``, one of which must belong to the drive.
-    near_field : {"plane-strain", "half-space"}
-        What they are wanted for.
-    bodies : {"plane", "solid"}
-        What bodies they are of.
-
-    Returns
-    -------
-    InfluenceCoefficients
-        For `ltca.compliance.coupled`.
-
-    Raises
-    ------
-    CycloError
-        When no file fits the drive, plane strain cannot say what the drive has, or nothing is installed that derives.
+    Raises `CycloError` when no file fits the drive, the engine (``fe`` or ``hybrid``) that they are wanted for cannot represent
+    the drive, or nothing is installed that derives.
     """
-    require(drive, _ENGINES[near_field])
+    require(drive, engine)
     if files is not None:
         return _load_first_that_fits(files, drive, bodies)[1]
     return _kept_or_derived({drive.name: drive}, bodies)[drive.name]
@@ -110,35 +89,16 @@ def find_case_coefficients(
     cases: Mapping[str, Drive],
     files: Sequence[Path] = (),
     *,
-    near_field: NearField = "half-space",
+    engine: str = "hybrid",
     bodies: Bodies = "plane",
 ) -> dict[str, InfluenceCoefficients]:
-    """Return the coefficients of each case, those of each distinct shape derived once.
+    """Return the coefficients by case, of several discs by case and disc; those of each distinct shape are derived once.
 
-    Parameters
-    ----------
-    cases : mapping of str to Drive
-        By name; of several discs each counts for itself.
-    files : sequence of Path
-        Files of ``cyclo derive``: each must serve a case, and each case must be served by one. Without any, those that
-        are not in the cache are derived and kept there.
-    near_field : {"plane-strain", "half-space"}
-        What they are wanted for.
-    bodies : {"plane", "solid"}
-        What bodies they are of.
-
-    Returns
-    -------
-    dict of str to InfluenceCoefficients
-        By case, of several discs by case and disc.
-
-    Raises
-    ------
-    CycloError
-        As `find_coefficients`; before anything is derived.
+    Each of the files must serve a case, and each case must be served by one. Errors are those of `find_coefficients`; they come
+    before anything is derived.
     """
     for drive in cases.values():
-        require(drive, _ENGINES[near_field])
+        require(drive, engine)
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
     if files:
         return _load_each(cases, files, bodies)
@@ -240,14 +200,14 @@ def derivation_words(drives: Iterable[Drive], bodies: Bodies, at_once: int = 1) 
 
 def _derive_missing(cases: Mapping[str, Drive], bodies: Bodies) -> None:
     """Derive the coefficients of cases into the cache, those of one shape once, and say so."""
-    missing: dict[Path, str] = {}
+    shapes: dict[str, str] = {}
     for name, drive in cases.items():
-        missing.setdefault(cached_file(drive, bodies), name)
-    if not missing:
+        shapes.setdefault(file_name(drive, bodies), name)
+    if not shapes:
         return
     derivation()
     require_cache()
-    missing = {cache_folder() / file_name(cases[name], bodies): name for name in missing.values()}
+    missing = {cache_folder() / file: name for file, name in shapes.items()}
     whole = derivation_words((cases[name] for name in missing.values()), bodies, _processes(len(missing), bodies))
     most = max(derivation_memory(cases[name].disc.number_of_teeth) for name in missing.values())
     # What solid bodies need is told by what derives them.

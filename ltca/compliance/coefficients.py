@@ -11,31 +11,28 @@ the tilt by a moment of 1 N·mm, q = 12 z/t³. Near a contact both follow one lo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
 from ltca.geometry.boundary_stations import (
-    LAGRANGE_POINTS,
     Boundary,
     boundaries_of,
     turned_boundaries,
     weights_of,
 )
 from ltca.reading.coefficient_file import quality_warning, read_coefficients, require_places, require_same_bodies
-from ltca.reading.coefficient_schema import (
-    flank_clustering,
-    is_solid,
-)
+from ltca.reading.coefficient_schema import flank_clustering, is_solid
 
 if TYPE_CHECKING:
     from ltca.output.labelled import Labelled
@@ -43,6 +40,46 @@ if TYPE_CHECKING:
 
 SOLID = "solid"
 """What files of solid bodies say of their plane."""
+
+
+class BodyPlaces(NamedTuple):
+    """Where contacts lie on the body of a disc: those of the flank, of bores and of holes, arrays (positions, contacts).
+
+    Attributes
+    ----------
+    wall : array of int
+        Number of the wall, ascending: flank, bores, holes.
+    parameter : array
+        θ on the flank, polar angles in the disc frame about the centres of bores and holes, rad.
+    point : array of complex
+        In the disc frame, on bores from their centres, mm; zero in holes, which have one contact each.
+    """
+
+    wall: NDArray[np.intp]
+    parameter: FloatArray
+    point: ComplexArray
+
+    @classmethod
+    def on_walls(
+        cls, flank: FloatArray, on_flank: ComplexArray, bores: FloatArray, radius: float, holes: FloatArray, cranks: int
+    ) -> BodyPlaces:
+        """Return the places by parameters of contacts on flank, bores of a radius, mm (crank after crank), and holes, rad."""
+        numbers = (
+            np.zeros(flank.shape[1], dtype=np.intp),
+            1 + np.repeat(np.arange(cranks), bores.shape[1] // cranks),
+            1 + cranks + np.arange(holes.shape[1]),
+        )
+        parameter = np.concatenate((flank, bores, holes), axis=1)
+        return cls(
+            wall=np.broadcast_to(np.concatenate(numbers), parameter.shape),
+            parameter=parameter,
+            point=np.concatenate((on_flank, radius * np.exp(1j * bores), np.zeros(holes.shape)), axis=1),
+        )
+
+    def take(self, columns: NDArray[np.intp]) -> BodyPlaces:
+        """Return some of the contacts by their numbers, ascending, shape (positions, chosen)."""
+        pick = partial(np.take_along_axis, indices=columns, axis=1)
+        return BodyPlaces(pick(self.wall), pick(self.parameter), pick(self.point))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,28 +97,24 @@ class InfluenceCoefficients:
         "strain" or "stress", state of the body part; or "solid".
     thickness : float
         Of all bodies but solid rollers, which are as long as they are, mm.
-    flank : Boundary
-        Stations of the flank.
-    bores : tuple of Boundary
-        Stations of the bore of each crank.
-    holes : tuple of Boundary
-        Stations of each hole.
+    flank, bores, holes : Boundary, or tuple of Boundary
+        Stations of the flank, of the bore of each crank and of each hole.
     disc : array, shape (stations, stations)
         Smooth part of the disc.
     pin : float
-        Smooth part of a wheel pin.
+        Of a wheel pin.
     roller : array, shape (2, 2)
         Of a roller; rows and columns inner, outer.
     race : array, shape (angles,)
         Of the inner race, by the angle between place and load.
     disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
-        Factor κ of −ln(distance) in each body, mm/N or rad/(N·mm).
+        Factor κ of −ln(distance) in each body.
     stress : StressCoefficients or None
         Stress along the walls of the disc, where the file has it.
     code_hash : str
         Of the code that derived them, where the file says so.
     warning : str
-        What to tell of figures that their file states about its accuracy and that are out of bounds; "" of none.
+        About figures of its accuracy that the file states and that are out of bounds; "" of none.
     tilting : InfluenceCoefficients or None
         Tilts by moments of solid bodies; None of plane ones, which take nothing of a tilt.
     """
@@ -114,15 +147,7 @@ class InfluenceCoefficients:
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
         """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
 
-        Parameters
-        ----------
-        drive : Drive
-            With as many teeth, bores and holes.
-
-        Raises
-        ------
-        DriveError
-            When the numbers of bores or holes differ.
+        Raises `DriveError` where the drive has not as many bores and holes.
         """
         counts = (
             ("crank.number", drive.crank.number, self.bores),
@@ -138,12 +163,8 @@ class InfluenceCoefficients:
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
     def placed_in(self, drive: Drive) -> InfluenceCoefficients:
-        """Return the coefficients of the part as it stands in a disc whose flank is turned against bores and holes.
-
-        Parameters
-        ----------
-        drive : Drive
-            Of one disc; which part it is and how that stands in it is told by `ltca.drive.parts.part_turn`.
+        """Return the coefficients of the part as it stands in the disc of a drive, whose flank is turned against bores and holes
+        (`ltca.drive.parts.part_turn`).
         """
         _, steps, tooth_pitches = drive.part_turn
         if steps == 0 and tooth_pitches == 0:
@@ -165,108 +186,56 @@ class InfluenceCoefficients:
         scale = self.thickness / length
         return replace(self, roller=scale * self.roller, roller_logarithm=scale * self.roller_logarithm)
 
-    def disc_matrix(
-        self,
-        flank: FloatArray,
-        bore: FloatArray,
-        holes: FloatArray,
-        flank_places: NDArray[np.complex128],
-        radius: float,
-        loaded: Sequence[NDArray[np.intp]] | None = None,
-        *,
-        among: bool = False,
-    ) -> FloatArray:
-        """Return the coefficients between contacts of the disc, the logarithm of a contact on itself left out.
-
-        Parameters
-        ----------
-        flank, bore, holes : array, shape (positions, pairs)
-            Places: θ on the flank, polar angles in the disc frame about their centres on bores (rollers crank after crank)
-            and holes, rad.
-        flank_places : array of complex, shape (positions, z_P)
-            The flank contacts in the disc frame, mm.
-        radius : float
-            Of the bores, mm.
-        loaded : sequence of three arrays of int, shape (positions, chosen), optional
-            Pins, rollers and holes whose loads are asked for; all of them by default.
-        among : bool
-            Whether only the approaches of these are wanted.
-
-        Returns
-        -------
-        array, shape (positions, contacts, loaded contacts)
-            Approach of every contact by unit loads, in the order flank, bores, holes, mm/N.
+    def disc_matrix(self, places: BodyPlaces) -> FloatArray:
+        """Return the approach of each contact of the disc by unit loads on each, shape (positions, contacts, contacts), mm/N;
+        the logarithm of a contact on itself is left out.
         """
-        positions, pins, rollers = flank.shape[0], flank.shape[1], bore.shape[1]
-        in_bores = [bore for bore in self.bores for _ in range(rollers // len(self.bores))]
-        boundaries = [self.flank] * pins + in_bores + list(self.holes)
-        stations, weights = weights_of(boundaries, np.concatenate((flank, bore, holes), axis=1))
-        if loaded is None:
-            loaded = [np.tile(np.arange(count), (positions, 1)) for count in (pins, rollers, holes.shape[1])]
-        on_flank, in_bore, in_holes = loaded
-        columns = np.concatenate((on_flank, pins + in_bore, pins + rollers + in_holes), axis=1)
-        if among:
-            stations = np.take_along_axis(stations, columns[..., None], axis=1)
-            weights = np.take_along_axis(weights, columns[..., None], axis=1)
-            columns = np.broadcast_to(np.arange(columns.shape[1]), columns.shape)
-        matrix = self._interpolated(stations, weights, columns)
-        split = on_flank.shape[1]
-        first, last = (0, split) if among else (0, pins)
-        self._add_logarithm(matrix[:, first:last, :split], flank_places, on_flank, among=among)
-        around = radius * np.exp(1j * bore)
-        first, last = last, last + (in_bore.shape[1] if among else rollers)
-        block = matrix[:, first:last, split : split + in_bore.shape[1]]
-        self._add_logarithm(block, around, in_bore, len(self.bores), among=among)
-        return matrix
-
-    def _interpolated(self, stations: NDArray[np.intp], weights: FloatArray, columns: NDArray[np.intp]) -> FloatArray:
-        """Smooth parts between contacts at stations with weights, shape (positions, contacts, columns)."""
         from scipy.sparse import csr_array
 
+        stations, weights = self._weights(places)
         positions, contacts, points = stations.shape
-        chosen, size = columns.shape[1], self.disc.shape[0]
-        at, weight = (np.take_along_axis(values, columns[..., None], axis=1).ravel() for values in (stations, weights))
-        rows = positions * chosen
-        spread = csr_array((weight, at, np.arange(rows + 1) * points), shape=(rows, size))
-        half = spread @ self.disc
-        places = (np.arange(rows) * size).reshape(positions, chosen, 1) + stations.reshape(positions, 1, -1)
-        near = half.ravel().take(places).reshape(positions, chosen, contacts, points)
-        return np.asarray(np.einsum("bkna,bna->bnk", near, weights))
+        rows, size = positions * contacts, self.disc.shape[0]
+        spread = csr_array((weights.ravel(), stations.ravel(), np.arange(rows + 1) * points), shape=(rows, size))
+        at = (np.arange(rows) * size).reshape(positions, contacts, 1) + stations.reshape(positions, 1, -1)
+        near = (spread @ self.disc).ravel().take(at).reshape(positions, contacts, contacts, points)
+        matrix: FloatArray = np.einsum("bkna,bna->bnk", near, weights)
+        for wall, logarithm in self._logarithms(places):
+            matrix[:, wall, wall] -= logarithm
+        return matrix
 
-    def _add_logarithm(
-        self,
-        block: FloatArray,
-        places: NDArray[np.complex128],
-        columns: NDArray[np.intp],
-        walls: int = 1,
-        *,
-        among: bool = False,
-    ) -> None:
-        """Take off κ ln(distance) between all places, or `among` those of the columns, and those of the columns on one wall, a
-        place and itself left out.
+    def disc_approach(self, places: BodyPlaces, load: FloatArray) -> FloatArray:
+        """Return the approaches of contacts by their loads together, mm, without the logarithm of each on itself."""
+        stations, weights = self._weights(places)
+        positions, size = load.shape[0], self.disc.shape[0]
+        at = stations + size * np.arange(positions)[:, None, None]
+        on_stations = np.bincount(at.ravel(), (weights * load[..., None]).ravel(), positions * size)
+        moved = on_stations.reshape(positions, size) @ self.disc
+        approach: FloatArray = np.einsum("bna,bna->bn", moved.ravel().take(at), weights)
+        for wall, logarithm in self._logarithms(places):
+            approach[:, wall] -= np.matmul(logarithm, load[:, wall, None])[..., 0]
+        return approach
+
+    def _weights(self, places: BodyPlaces) -> tuple[NDArray[np.intp], FloatArray]:
+        """Stations and weights of the interpolation to contacts, shapes (positions, contacts, points)."""
+        return weights_of((self.flank, *self.bores, *self.holes), places.wall, places.parameter)
+
+    def _logarithms(self, places: BodyPlaces) -> Iterator[tuple[slice, FloatArray]]:
+        """κ ln(distance) among the contacts of the flank and among those in bores, with their numbers.
+
+        It is zero between a contact and itself and between contacts in different bores.
         """
-        chosen, each = np.take_along_axis(places, columns, axis=1), places.shape[1] // walls
-        rows = columns if among else np.arange(places.shape[1])[None]
-        apart = (chosen if among else places)[:, :, None] - chosen[:, None, :]
-        square = apart.real**2 + apart.imag**2
-        same = rows[:, :, None] == columns[:, None, :]
-        if walls > 1:
-            same |= (rows // each)[:, :, None] != (columns // each)[:, None, :]
-        block -= 0.5 * self.disc_logarithm * np.log(np.where(same, 1.0, square))
+        flank, bores = np.searchsorted(places.wall[0], (1, 1 + len(self.bores)))
+        for own in (slice(0, flank), slice(flank, bores)):
+            wall, point = places.wall[:, own], places.point[:, own]
+            apart = point[:, :, None] - point[:, None]
+            none = (wall[:, :, None] != wall[:, None]) | np.eye(wall.shape[1], dtype=bool)
+            square = np.where(none, 1.0, apart.real**2 + apart.imag**2)
+            yield own, 0.5 * self.disc_logarithm * np.log(square)
 
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
         """Return the coefficients between the inner contacts of all rollers, on the race of each crank for itself, mm/N.
 
-        Parameters
-        ----------
-        angles : array, shape (cranks · n_BR,)
-            Polar angles of the contacts in the cage, crank after crank and the same in each, rad.
-        radius : float
-            r_i, mm.
-
-        Returns
-        -------
-        array, shape (cranks · n_BR, cranks · n_BR)
+        `angles` are polar angles of the contacts in the cage, crank after crank and the same in each, rad; `radius` is r_i, mm.
         """
         cranks = len(self.bores)
         angles = angles[: angles.size // cranks]
@@ -298,12 +267,12 @@ def logarithm_factor(material: Material, thickness: float, plane: str = "strain"
 def load_coefficients(
     path: Path, drive: Drive, *, lawful: bool | Literal["quick"] = True, bodies: Bodies | None = None
 ) -> InfluenceCoefficients:
-    """Read the coefficients of a drive.
+    """Read the coefficients of a drive from a file of ``cyclo derive``.
 
     Parameters
     ----------
     path : Path
-        File of ``cyclo derive``.
+        The file.
     drive : Drive
         The drive they must belong to.
     lawful : bool or "quick"
@@ -311,18 +280,13 @@ def load_coefficients(
     bodies : {"plane", "solid"}, optional
         What bodies they must be of; any by default.
 
-    Returns
-    -------
-    InfluenceCoefficients
-        Ready to be evaluated at any place.
-
     Raises
     ------
     CycloError
         When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
     """
     data = read_coefficients(path, lawful=lawful)
-    own = bodies_of(data)
+    own: Bodies = "solid" if is_solid(data) else "plane"
     if bodies not in (None, own):
         raise CycloError(f"{path}: holds coefficients of {own} bodies, not of {bodies} ones: give --bodies {own}")
     shared = require_same_bodies(path, data, drive)
@@ -343,19 +307,12 @@ def load_coefficients(
     )
 
 
-def bodies_of(data: Labelled) -> Bodies:
-    """Return what bodies a file is of."""
-    return "solid" if is_solid(data) else "plane"
-
-
-def _coefficients_of_dataset(data: Labelled, drive: Drive, *, shared: bool) -> InfluenceCoefficients:
-    """Take the half-plane's logarithm off every entry of a file."""
-    even = _smooth_parts(data, drive, shared=shared)
-    return replace(even, tilting=_smooth_parts(data, drive, shared=shared, tilts=True)) if even.plane == SOLID else even
-
-
-def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False) -> InfluenceCoefficients:
-    """Smooth parts of approaches by loads, or of tilts by moments, whose logarithms have 12 by the square of the length."""
+def _coefficients_of_dataset(
+    data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False
+) -> InfluenceCoefficients:
+    """Take the half-plane's logarithm off every entry of a file: of approaches by loads, of solid bodies of tilts by moments,
+    whose logarithms have 12 by the square of the length, as well.
+    """
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     # Solid rollers have their own length.
     length = drive.roller_length if plane == SOLID else thickness
@@ -388,7 +345,7 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
     chord = 2.0 * drive.crank_bearing.inner_race_radius * np.abs(np.sin(0.5 * angle))
     race = approach("race") + race_logarithm * _mean_logarithm(chord, race_half_width, race_half_width)
     return InfluenceCoefficients(
-        fingerprint=drive.shape_fingerprint(bodies_of(data)),
+        fingerprint=drive.shape_fingerprint("solid" if plane == SOLID else "plane"),
         shared=shared,
         plane=plane,
         thickness=thickness,
@@ -403,27 +360,7 @@ def _smooth_parts(data: Labelled, drive: Drive, *, shared: bool, tilts: bool = F
         pin_logarithm=pin_logarithm,
         roller_logarithm=roller_logarithm,
         race_logarithm=race_logarithm,
-    )
-
-
-def without_coupling(drive: Drive) -> InfluenceCoefficients:
-    """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
-    cranks, holes = drive.crank.number, drive.number_of_holes
-    flank, *walls = [Boundary(first=k * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(1 + cranks + holes)]
-    return InfluenceCoefficients(
-        fingerprint=drive.shape_fingerprint(),
-        shared=False,
-        plane="none",
-        thickness=drive.disc.thickness,
-        flank=flank,
-        bores=tuple(walls[:cranks]),
-        holes=tuple(walls[cranks:]),
-        disc=np.zeros(((1 + cranks + holes) * LAGRANGE_POINTS,) * 2),
-        pin=0.0,
-        roller=np.zeros((2, 2)),
-        race=np.zeros(LAGRANGE_POINTS),
-        disc_logarithm=0.0,
-        pin_logarithm=0.0,
-        roller_logarithm=0.0,
-        race_logarithm=0.0,
+        tilting=_coefficients_of_dataset(data, drive, shared=shared, tilts=True)
+        if plane == SOLID and not tilts
+        else None,
     )

@@ -14,34 +14,23 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficients import SOLID, InfluenceCoefficients
+from ltca.compliance.coefficients import SOLID, BodyPlaces, InfluenceCoefficients
 from ltca.compliance.half_space import shaft_pin_springs
-from ltca.compliance.near_field import NearField, NearFieldLaws, OwnParts
-from ltca.compliance.pressures import pressures_in_slices, pressures_of_law
-from ltca.compliance.response import (
-    ContactLaws,
-    ContactPressures,
-    DiscResponse,
-    KindPressures,
-)
-from ltca.contact.contact_kind import ContactKind
+from ltca.compliance.near_field import BodyParts, NearField, near_field_contacts, near_field_depth
+from ltca.compliance.pressures import pressures_in_plane, pressures_in_slices
+from ltca.compliance.response import ContactLaws, ContactPressures, DiscContacts, DiscResponse
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.backed import (
-    back_shaft_pins,
-    shaft_pin_stiffness,
-    tip_motion,
-)
-from ltca.laws.contact_law import ContactLaw
+from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness
 
 
 @dataclass(frozen=True)
@@ -50,65 +39,46 @@ class BodyFlexibility:
 
     Attributes
     ----------
-    coefficients : InfluenceCoefficients
+    parts : BodyParts
         Of the bodies.
-    own : OwnParts
-        What each contact's own body parts add to its own.
-    race : array, shape (rollers, rollers)
-        Between the rollers on the races.
-    behind : float
-        What stands behind shaft pins in their holes, mm/N.
-    unit : float
-        Of what is taken and of the loads, by mm/N.
-    places : tuple
-        Of the contacts (`InfluenceCoefficients.disc_matrix`).
+    places : BodyPlaces
+        Of all contacts.
+    counts : tuple of int
+        Numbers of wheel pins, rollers and holes.
     loaded : tuple of array of int, shape (positions, chosen)
         Wheel pins, rollers and holes that carry.
     """
 
-    coefficients: InfluenceCoefficients
-    own: Any
-    race: FloatArray
-    behind: float
-    unit: float
-    places: tuple[Any, ...]
+    parts: BodyParts
+    places: BodyPlaces
+    counts: tuple[int, int, int]
     loaded: tuple[NDArray[np.intp], ...]
 
     @cached_property
     def among(self) -> FloatArray:
         """What loaded pins, rollers in the bores and holes take by each other's loads, shape (positions, n, n), mm/N."""
-        flank, bore, holes, on_flank, radius = self.places
-        found = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded, among=True)
-        place = np.arange(found.shape[1])
-        found[:, place, place] += self.diagonal
-        return self.unit * found if self.unit != 1.0 else found
-
-    @property
-    def diagonal(self) -> FloatArray:
-        """What is added of each loaded contact alone."""
-        own = self.own.pin, self.own.outer, self.own.hole + self.behind
-        return np.repeat(own, [some.shape[1] for some in self.loaded])
+        first = np.cumsum((0, *self.counts[:2]))
+        columns = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
+        found, own = self.parts.coefficients.disc_matrix(self.places.take(columns)), np.arange(columns.shape[1])
+        found[:, own, own] += np.repeat(self.parts.alone, [some.shape[1] for some in self.loaded])
+        found *= self.parts.unit
+        return found
 
     @property
     def on_race(self) -> FloatArray:
         """What rollers take on the races by each other's loads there, shape (positions, rollers, rollers)."""
         some = self.loaded[1]
-        return np.asarray(self.unit * self.race[some[:, :, None], some[:, None, :]])
+        return np.asarray(self.parts.unit * self.parts.race[some[:, :, None], some[:, None, :]])
 
     @property
     def across_roller(self) -> float:
         """What a roller yields at one of its contacts under the load of the other."""
-        return self.unit * float(self.coefficients.roller[0, 1])
+        return self.parts.unit * float(self.parts.coefficients.roller[0, 1])
 
     def taken(self, load: FloatArray) -> FloatArray:
-        """What all pins, rollers in the bores and holes take by the loads of the chosen ones, shape (positions, n)."""
-        flank, bore, holes, on_flank, radius = self.places
-        matrix = self.coefficients.disc_matrix(flank, bore, holes, on_flank, radius, self.loaded)
-        found = np.matmul(matrix, load[..., None])[..., 0]
-        first = np.cumsum((0, flank.shape[1], bore.shape[1]))
-        chosen = np.concatenate([at + some for at, some in zip(first, self.loaded, strict=True)], axis=1)
-        found[np.arange(found.shape[0])[:, None], chosen] += self.diagonal * load
-        return np.asarray(self.unit * found)
+        """What pins, rollers in the bores and holes take by the loads of all of them, shape (positions, contacts)."""
+        together = self.parts.coefficients.disc_approach(self.places, load)
+        return np.asarray(self.parts.unit * (together + np.repeat(self.parts.alone, self.counts) * load))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,34 +87,20 @@ class CoupledCompliance:
 
     Attributes
     ----------
-    geometry : ContactGeometry
-        The contact geometry of the drive.
-    coefficients : InfluenceCoefficients
-        Body parts, rollers as long as they are.
-    near_field : NearFieldLaws
-        Laws of the near fields.
+    contacts : DiscContacts
+        With the laws of the near fields.
+    has_ends : bool
+        Whether contacts end somewhere: in plane strain they do not.
     hole_law : ContactLaw
         Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
-    hole_spring : float
-        What the spring of the shaft pin yields behind the near field, mm/N; zero where it is the law.
-    race : array, shape (rollers, rollers)
-        Coefficients between the inner contacts of the rollers, which feel those on their own race alone, mm/N.
-    own : OwnParts
-        What each contact's own body parts add to the diagonal of C.
-    race_tilting : array, shape (rollers, rollers), or None
-        Tilts by moments between the inner contacts, rad/(N·mm), of solid bodies in slices.
+    bodies : tuple of BodyParts
+        Of approaches by loads and, of solid bodies, of tilts by moments.
     """
 
-    grids_can_check: ClassVar[bool] = False
-
-    geometry: ContactGeometry
-    coefficients: InfluenceCoefficients
-    near_field: NearFieldLaws
-    hole_law: ContactLaw
-    hole_spring: float
-    race: FloatArray
-    own: OwnParts
-    race_tilting: FloatArray | None = None
+    contacts: DiscContacts
+    has_ends: bool
+    hole_law: Any
+    bodies: tuple[BodyParts, ...]
 
     @classmethod
     def of_drive(
@@ -155,114 +111,77 @@ class CoupledCompliance:
         *,
         hole_near_field: bool = True,
     ) -> CoupledCompliance:
-        """Return the coupled model of a drive.
+        """Return the coupled model of a drive of one disc by coefficients of its bodies.
 
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        coefficients : InfluenceCoefficients
-            Of this drive.
-        near_field : {"plane-strain", "half-space"}
-            Plane strain, or half-spaces of finite length with the profiles of rollers and pins.
-        hole_near_field : bool
-            Whether holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all.
-
-        Raises
-        ------
-        DriveError
-            When the coefficients are those of other bodies, or plane strain cannot say what the drive has.
+        With `hole_near_field` holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all. Raises
+        `DriveError` when the coefficients are those of other bodies, or plane strain cannot represent the drive.
         """
         fingerprint = drive.shape_fingerprint(coefficients.bodies)
         if coefficients.fingerprint != fingerprint:
-            raise DriveError(
-                [
-                    f"influence coefficients of the shape {coefficients.fingerprint}: must be those of {drive.name}, shape "
-                    f"{fingerprint}"
-                ]
-            )
-        geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
-        place = geometry.placement
+            other = f"influence coefficients of the shape {coefficients.fingerprint}"
+            raise DriveError([f"{other}: must be those of {drive.name}, shape {fingerprint}"])
         yields = hole_near_field and shaft_pins_yield(drive)
-        laws = NearFieldLaws.of_drive(
+        contacts = near_field_contacts(
             drive,
             near_field,
             rigid_shaft_pins=hole_near_field and not yields,
             solid=coefficients.plane == SOLID,
         )
+        geometry, place = contacts.geometry, contacts.geometry.placement
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
         slices = drive.contact.slices
         # In slices a beam bends behind its contact, under the forces of all discs (`ltca.compliance.pin_flexibility`).
         bends_behind = slices > 1 and shaft_pin_beam(drive) is not None
-        at_hole: Any = laws.hole
+        at_hole = contacts.hole_law
         if not hole_near_field and not bends_behind:
             at_hole = shaft_pin_springs(drive, place.shaft_pin_plays)
         elif slices == 1:
-            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, laws.depth)
+            at_hole = back_shaft_pins(drive, at_hole, place.shaft_pin_plays, near_field_depth(drive, near_field))
         # A sleeve's own law has all that it yields (`ltca.laws.backed`).
         bare = drive.pin_shaft is not None and drive.pin_shaft.seat.kind == "fixed"
-        own = OwnParts.of_drive(drive, geometry, body, near_field, laws.datum, elastic_shaft_pins=yields and bare)
-        on_race = place.roller_cage_angles, float(place.inner_race_radius)
-        race, tilting = body.race_matrix(*on_race), None
-        if body.tilting is not None and own.tilting is not None:
-            tilting = body.tilting.race_matrix(*on_race) + own.tilting.inner * np.eye(race.shape[0])
-        return cls(
-            geometry=geometry,
-            coefficients=body,
-            near_field=laws,
-            hole_law=at_hole,
-            hole_spring=1.0 / shaft_pin_stiffness(drive) if hole_near_field and not bends_behind else 0.0,
-            race=race + own.inner * np.eye(race.shape[0]),
-            own=own,
-            race_tilting=tilting,
-        )
+        spring = 1.0 / shaft_pin_stiffness(drive) if hole_near_field and not bends_behind else 0.0
+        bodies = [
+            BodyParts.of_drive(
+                drive, geometry, each, near_field, elastic_shaft_pins=yields and bare, hole_spring=spring, tilts=tilts
+            )
+            for each, tilts in ((body, False), (body.tilting, True))
+            if each is not None
+        ]
+        return cls(contacts=contacts, has_ends=near_field == "half-space", hole_law=at_hole, bodies=tuple(bodies))
+
+    @property
+    def geometry(self) -> ContactGeometry:
+        """The contact geometry of the drive."""
+        return self.contacts.geometry
+
+    @property
+    def coefficients(self) -> InfluenceCoefficients:
+        """Coefficients by which the contacts of the disc feel each other."""
+        return self.bodies[0].coefficients
 
     @property
     def contact_laws(self) -> ContactLaws:
-        """Laws of the contacts."""
-        near, place = self.near_field, self.geometry.placement
-        return ContactLaws(
-            (near.pin, near.outer, self.hole_law, near.inner),
-            place.outer_effective_radii,
-            place.hole_effective_radii,
-            place.inner_effective_radii,
-        )
+        """Laws of the contacts: near fields, and what is behind those of the holes."""
+        return replace(self.contacts, hole_law=self.hole_law).contact_laws
 
-    def body_flexibility(self, places: tuple[Any, ...], loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
+    def body_flexibility(self, places: BodyPlaces, loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
         """Return what the bodies of a disc yield of approaches by loads and, of solid bodies in slices, of tilts by moments.
 
-        `places` are those that `InfluenceCoefficients.disc_matrix` takes, `loaded` the wheel pins, rollers and holes that carry.
+        `loaded` are the wheel pins, rollers and holes that carry.
         """
-        whole = self.coefficients
-        found = [BodyFlexibility(whole, self.own, self.race, self.hole_spring, 1.0, places, tuple(loaded))]
-        tilting, own = whole.tilting, self.own.tilting
-        if self.race_tilting is not None and tilting is not None and own is not None:
-            # What a pin stands on behind its contact is rigid against moments.
-            unit = (0.5 * whole.thickness) ** 2
-            found.append(BodyFlexibility(tilting, own, self.race_tilting, 0.0, unit, places, tuple(loaded)))
-        return found
+        place = self.geometry.placement
+        counts = place.wheel_pin_radii.shape[-1], place.roller_radii.shape[-1], place.hole_radii.shape[-1]
+        return [BodyFlexibility(parts, places, counts, tuple(loaded)) for parts in self.bodies]
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the near fields, of contacts in slices from their line loads."""
-        laws, place = self.near_field, self.geometry.placement
+        contacts, place, rollers = self.contacts, self.geometry.placement, response.rollers
         if response.leaning_pins is not None:
-            return pressures_in_slices(
-                response, laws.kinds, place, has_ends=laws.has_ends, rigid_shaft_pins=laws.rigid_shaft_pins
-            )
+            rigid = contacts.rigid_shaft_pins
+            return pressures_in_slices(response, contacts.kinds, place, has_ends=self.has_ends, rigid_shaft_pins=rigid)
         assert response.deformation is not None
-        near = response.deformation[:, 0]
-        outer_radius, hole_radius, inner_radius = self.contact_laws[1:]
-        pins, rollers = response.pin_load.shape[1], outer_radius.size
-        inner, _ = laws.inner.approach_at_load(response.rollers.inner_load, inner_radius)
-        hole, _ = laws.hole.approach_at_load(response.hole_load, hole_radius)
-
-        def read(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
-            return pressures_of_law(law, kind if laws.has_ends else None, approach, radius)
-
-        return ContactPressures(
-            pins=read(laws.pin, laws.kinds.pins, near[:, :pins], response.flank.effective_radius),
-            outer=read(laws.outer, laws.kinds.outer, near[:, pins : pins + rollers], outer_radius),
-            inner=read(laws.inner, laws.kinds.inner, inner, inner_radius),
-            holes=read(laws.hole, laws.kinds.holes, hole, hole_radius),
-            rigid_shaft_pins=laws.rigid_shaft_pins,
+        pins, bores, _ = np.split(
+            response.deformation[:, 0], np.cumsum((response.pin_load.shape[1], rollers.outer_load.shape[1])), axis=1
         )
+        inner, _ = contacts.inner_law.approach_at_load(rollers.inner_load, place.inner_effective_radii)
+        return pressures_in_plane(contacts, response, pins, bores, inner, ends=self.has_ends)

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ltca.arrays import FloatArray, by_drive
+from ltca.arrays import FloatArray
 from ltca.compliance import sliced
-from ltca.compliance.pressures import elastic_hole_pressures, pressures_in_slices, pressures_of_law
-from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse
+from ltca.compliance.pressures import pressures_in_plane, pressures_in_slices
+from ltca.compliance.response import ContactPressures, DiscContacts, DiscResponse
 from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, LengthProfile, PinShaft, PinWheel
@@ -28,7 +28,7 @@ from ltca.laws.backed import (
     tip_motion,
     wheel_pin_seat,
 )
-from ltca.laws.contact_law import ContactLaw
+from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.profiled_line_contact import law_for_profile
 from ltca.laws.spring import SpringLaw
 
@@ -40,52 +40,10 @@ sharper than the 180th part of a lobe."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RollerLaws:
-    """Load laws of the two contacts of every roller.
+class HalfSpaceCompliance(DiscContacts):
+    """Half-space laws for pins and rollers, springs for the pin holes (the paper's model)."""
 
-    Attributes
-    ----------
-    inner, outer : ContactLaw
-        Laws on the inner race and in the bore.
-    inner_radius, outer_radius : array, shape (rollers,)
-        Effective radii of curvature, mm.
-    """
-
-    inner: ContactLaw
-    outer: ContactLaw
-    inner_radius: FloatArray = by_drive(1)
-    outer_radius: FloatArray = by_drive(1)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HalfSpaceCompliance:
-    """Half-space laws for pins and rollers, springs for the pin holes (the paper's model).
-
-    Attributes
-    ----------
-    geometry : ContactGeometry
-        The contact geometry of the drive.
-    hole_law : ContactLaw
-        Law of shaft pins and holes: springs of stiffness k_PS in series with the sleeves' seats.
-    kinds : ContactKinds
-        The contacts as grids see them.
-    rigid_shaft_pins : bool
-        Whether shaft pins are rigid where they touch their holes; springs stand for all that yields there otherwise.
-    pin_law : ContactLaw
-        Law of wheel pin and flank.
-    roller_laws : RollerLaws
-        Laws of the rollers.
-    """
-
-    grids_can_check: ClassVar[bool] = True
     coefficients: ClassVar[None] = None
-
-    geometry: ContactGeometry
-    hole_law: ContactLaw
-    kinds: ContactKinds
-    rigid_shaft_pins: bool = False
-    pin_law: ContactLaw
-    roller_laws: RollerLaws
 
     @classmethod
     def of_drive(
@@ -121,18 +79,12 @@ class HalfSpaceCompliance:
                 on_ladder=in_batch,
             )
 
-        inner_radius, outer_radius = place.inner_effective_radii, place.outer_effective_radii
-        rollers = RollerLaws(
-            inner=law(kinds.inner, bearing.roller_profile, bearing.roller_radius, inner_radius),
-            outer=law(kinds.outer, bearing.roller_profile, bearing.roller_radius, outer_radius),
-            inner_radius=inner_radius,
-            outer_radius=outer_radius,
-        )
+        def rollers(kind: ContactKind, radii: FloatArray) -> Any:
+            return law(kind, bearing.roller_profile, bearing.roller_radius, radii)
+
         pins = law(kinds.pins, wheel.pin_profile, wheel.pin_radius, pin_radii, wheel)
-        if slices == 1:
-            pins = back_wheel_pins(drive, pins, place.wheel_pin_plays)
-        else:
-            pins = sliced.back_line(pins, wheel_pin_seat(drive), place.wheel_pin_plays)
+        pins = behind_wheel_pins(drive, pins, place.wheel_pin_plays)
+        if slices > 1:
             # The law has the lead, in which drives of a batch may differ.
             kinds = replace(kinds, pins=replace(kinds.pins, lead=None))
         if slices > 1 and shaft_pin_beam(drive) is not None:
@@ -146,39 +98,24 @@ class HalfSpaceCompliance:
         return cls(
             geometry=geometry,
             pin_law=pins,
-            roller_laws=rollers,
+            outer_law=rollers(kinds.outer, place.outer_effective_radii),
+            inner_law=rollers(kinds.inner, place.inner_effective_radii),
             hole_law=hole,
             kinds=kinds,
             rigid_shaft_pins=rigid,
         )
 
-    @property
-    def contact_laws(self) -> ContactLaws:
-        """Laws of the contacts."""
-        rollers = self.roller_laws
-        return ContactLaws(
-            (self.pin_law, rollers.outer, self.hole_law, rollers.inner),
-            rollers.outer_radius,
-            self.geometry.placement.hole_effective_radii,
-            rollers.inner_radius,
-        )
-
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return pressures and half-widths from the laws, those of the shaft pins from their loads."""
-        place, kinds, rollers, laws = self.geometry.placement, self.kinds, response.rollers, self.roller_laws
+        place, kinds, rollers = self.geometry.placement, self.kinds, response.rollers
         if response.leaning_pins is not None:
             spring = isinstance(getattr(self.hole_law, "contact", self.hole_law), sliced.SeparateSlices)
             return pressures_in_slices(
                 response, kinds, place, rigid_shaft_pins=self.rigid_shaft_pins, shaft_pins_on_springs=spring
             )
-        flank = response.flank
-        return ContactPressures(
-            pins=pressures_of_law(self.pin_law, kinds.pins, flank.approach, flank.effective_radius),
-            outer=pressures_of_law(laws.outer, kinds.outer, rollers.outer_approach, laws.outer_radius),
-            inner=pressures_of_law(laws.inner, kinds.inner, rollers.inner_approach, laws.inner_radius),
-            holes=elastic_hole_pressures(kinds.holes, response.hole_load, place),
-            rigid_shaft_pins=self.rigid_shaft_pins,
-        )
+        holes = LineContactLaw(kinds.holes.length, kinds.holes.contact_modulus)
+        contacts, pins = replace(self, hole_law=holes), response.flank.approach
+        return pressures_in_plane(contacts, response, pins, rollers.outer_approach, rollers.inner_approach)
 
 
 def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = None) -> Any:
@@ -197,6 +134,13 @@ def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = No
         return found
     twice = sleeve_overlap(drive, part, HALF_SPACE_DATUM * length)
     return replace(found, sleeve=drive.materials.sleeve.plane_strain_compliance * modulus, overlap=twice)
+
+
+def behind_wheel_pins(drive: Drive, law: Any, play: FloatArray, depth: float | None = None) -> Any:
+    """Return the law of wheel pins and flank with what is behind the contacts (`ltca.laws.backed`); in slices beams are not."""
+    if drive.contact.slices == 1:
+        return back_wheel_pins(drive, law, play, depth)
+    return sliced.back_line(law, wheel_pin_seat(drive), play)
 
 
 def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:

@@ -22,7 +22,8 @@ import numpy as np
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
 from ltca.compliance.coefficients import SOLID, InfluenceCoefficients, logarithm_factor
-from ltca.compliance.half_space import HalfSpaceCompliance, hole_in_slices
+from ltca.compliance.half_space import HalfSpaceCompliance, behind_wheel_pins, hole_in_slices
+from ltca.compliance.response import DiscContacts
 from ltca.compliance.solid_cylinder import free_ends_of_cylinder
 from ltca.contact.contact_kind import ContactKinds
 from ltca.contact.free_end import FreeEnds, guilbault_factor
@@ -33,15 +34,7 @@ from ltca.drive.parts import Drive, Material, PinShaft, PinWheel, contact_modulu
 from ltca.errors import ConvergenceError, DriveError
 from ltca.geometry.length_profile import lead_relief
 from ltca.geometry.pairs import ContactGeometry
-from ltca.geometry.placement import Placement
-from ltca.laws.backed import (
-    HALF_SPACE_DATUM,
-    BackedLaw,
-    back_wheel_pins,
-    shaft_pin_seat,
-    sleeve_overlap,
-    wheel_pin_seat,
-)
+from ltca.laws.backed import HALF_SPACE_DATUM, BackedLaw, shaft_pin_seat, sleeve_overlap, tip_motion
 from ltca.laws.contact_law import ContactLaw
 from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.plane_strain import SELF_ENERGY, PlaneContactLaw
@@ -62,139 +55,93 @@ MAX_ITERATIONS = 30
 """Of the search for the approach of a half-width: a handful is usual."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NearFieldLaws:
-    """Near fields of the contacts of a drive.
+def near_field_contacts(drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False) -> DiscContacts:
+    """Return the contacts of a drive with the laws of their near fields.
 
-    Attributes
-    ----------
-    kind : {"plane-strain", "half-space"}
-        What they are.
-    pin, outer, inner, hole : ContactLaw
-        Wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
-    rigid_shaft_pins : bool
-        Whether `hole` is the law of rigid shaft pins in yielding walls.
-    datum : float
-        Distance at which a near field in plane strain hands over to the body part, mm.
-    kinds : ContactKinds
-        Lengths and profiles, what pressures at the ends are read from.
+    Half-spaces have the lengths and profiles of rollers and pins, in slices with the ends of `solid` bodies; plane strain has a
+    datum. With `rigid_shaft_pins` nothing yields at the holes but their walls.
+
+    Raises
+    ------
+    DriveError
+        For another kind; in plane strain, when the drive is not the same all along its thickness.
     """
+    if kind not in get_args(NearField):
+        raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
+    modulus, kinds = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins), ContactKinds.of_drive(drive)
+    if kind == "half-space":
+        if solid and drive.contact.slices > 1:
+            kinds = kinds.with_free_ends(drive, rigid_shaft_pins=rigid_shaft_pins)
+        found = HalfSpaceCompliance.of_drive(drive, kinds=kinds)
+        holes = replace(kinds.holes, contact_modulus=modulus)
+        at_hole: Any = LineContactLaw(drive.disc.thickness, modulus)
+        if drive.contact.slices > 1:
+            at_hole = hole_in_slices(drive, holes, found.geometry.placement.shaft_pin_plays)
+        kinds = replace(found.kinds, holes=holes)
+        return replace(found, hole_law=at_hole, kinds=kinds, rigid_shaft_pins=rigid_shaft_pins)
+    require(drive, "fe")
+    parts, thickness, slices = drive.materials, drive.disc.thickness, drive.contact.slices
+    geometry, datum = ContactGeometry.of_drive(drive), plane_strain_datum(drive)
 
-    kind: NearField
-    pin: ContactLaw
-    outer: ContactLaw
-    inner: ContactLaw
-    hole: ContactLaw
-    rigid_shaft_pins: bool
-    datum: float
-    kinds: ContactKinds
-
-    @classmethod
-    def of_drive(cls, drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False) -> NearFieldLaws:
-        """Return the near fields of a drive.
-
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        kind : {"plane-strain", "half-space"}
-            Plane strain with a datum, or half-spaces with the lengths and profiles of rollers and pins.
-        rigid_shaft_pins : bool
-            Whether nothing yields at the holes but their walls.
-        solid : bool
-            Whether bodies are solid ones, whose ends half-spaces in slices honour.
-
-        Raises
-        ------
-        DriveError
-            For another kind; in plane strain, when the drive is not the same all along its thickness.
-        """
-        if kind not in get_args(NearField):
-            raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
-        parts, thickness = drive.materials, drive.disc.thickness
-        at_hole = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins)
-        # Only its logarithm enters, and cancels where the body part is in plane strain, too.
-        datum = max(thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
-        kinds = ContactKinds.of_drive(drive)
-        if kind == "half-space":
-            if solid and drive.contact.slices > 1:
-                kinds = kinds.with_free_ends(drive, rigid_shaft_pins=rigid_shaft_pins)
-            half_space = HalfSpaceCompliance.of_drive(drive, kinds=kinds)
-            kinds = replace(half_space.kinds, holes=replace(kinds.holes, contact_modulus=at_hole))
-            return cls(
-                kind=kind,
-                pin=half_space.pin_law,
-                outer=half_space.roller_laws.outer,
-                inner=half_space.roller_laws.inner,
-                hole=LineContactLaw(thickness, at_hole)
-                if drive.contact.slices == 1
-                else hole_in_slices(drive, kinds.holes, Placement.of_drive(drive).shaft_pin_plays),
-                rigid_shaft_pins=rigid_shaft_pins,
-                datum=datum,
-                kinds=kinds,
-            )
-        require(drive, "fe")
-        place, slices = Placement.of_drive(drive), drive.contact.slices
-
-        def law(modulus: float, part: PinWheel | PinShaft | None = None) -> Any:
-            plane: ContactLaw = PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
-            if slices == 1:
-                return plane
-            z = sliced.slice_heights(thickness, slices)
-            if part is not None and part.seat.kind == "sleeve":
-                plane = BackedLaw(contact=plane, play=np.zeros(1), overlap=sleeve_overlap(drive, part, datum))
-            return sliced.SeparateSlices(
-                law=plane,
-                length=thickness,
-                slices=slices,
-                relief=lead_relief(drive.disc, z) if part is drive.pin_wheel else np.zeros(z.shape),
-            )
-
-        flank, hole = law(contact_modulus(parts.disc, drive.flank_pin), drive.pin_wheel), law(at_hole, drive.pin_shaft)
+    def law(modulus: float, part: PinWheel | PinShaft | None = None) -> Any:
+        plane: ContactLaw = PlaneContactLaw(thickness=thickness, contact_modulus=modulus, datum=datum)
         if slices == 1:
-            flank = back_wheel_pins(drive, flank, place.wheel_pin_plays, datum)
-        else:
-            flank = sliced.back_line(flank, wheel_pin_seat(drive), place.wheel_pin_plays)
-            hole = sliced.back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays)
-        return cls(
-            kind=kind,
-            pin=flank,
-            outer=law(contact_modulus(parts.disc, parts.roller)),
-            inner=law(contact_modulus(parts.inner_race, parts.roller)),
-            hole=hole,
-            rigid_shaft_pins=rigid_shaft_pins,
-            datum=datum,
-            kinds=replace(kinds, holes=replace(kinds.holes, contact_modulus=at_hole)),
-        )
+            return plane
+        z = sliced.slice_heights(thickness, slices)
+        if part is not None and part.seat.kind == "sleeve":
+            plane = BackedLaw(contact=plane, play=np.zeros(1), overlap=sleeve_overlap(drive, part, datum))
+        relief = lead_relief(drive.disc, z) if part is drive.pin_wheel else np.zeros(z.shape)
+        return sliced.SeparateSlices(law=plane, length=thickness, slices=slices, relief=relief)
 
-    @property
-    def depth(self) -> float:
-        """Depth down to which the near field of a contact over the disc's thickness counts, mm."""
-        return HALF_SPACE_DATUM * self.kinds.holes.length if self.has_ends else self.datum
+    flank, hole = law(contact_modulus(parts.disc, drive.flank_pin), drive.pin_wheel), law(modulus, drive.pin_shaft)
+    place = geometry.placement
+    if slices > 1:
+        hole = sliced.back_line(hole, shaft_pin_seat(drive), place.shaft_pin_plays)
+    return DiscContacts(
+        geometry=replace(geometry, **tip_motion(drive)),
+        pin_law=behind_wheel_pins(drive, flank, place.wheel_pin_plays, datum),
+        outer_law=law(contact_modulus(parts.disc, parts.roller)),
+        inner_law=law(contact_modulus(parts.inner_race, parts.roller)),
+        hole_law=hole,
+        kinds=replace(kinds, holes=replace(kinds.holes, contact_modulus=modulus)),
+        rigid_shaft_pins=rigid_shaft_pins,
+    )
 
-    @property
-    def has_ends(self) -> bool:
-        """Whether contacts end somewhere: in plane strain they do not."""
-        return self.kind == "half-space"
+
+def plane_strain_datum(drive: Drive) -> float:
+    """Distance at which a near field in plane strain hands over to the body part, mm.
+
+    Only its logarithm enters, and cancels where the body part is in plane strain, too.
+    """
+    return max(drive.disc.thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
+
+
+def near_field_depth(drive: Drive, kind: NearField) -> float:
+    """Return the depth down to which the near field of a contact over the disc's thickness counts, mm."""
+    return HALF_SPACE_DATUM * drive.disc.thickness if kind == "half-space" else plane_strain_datum(drive)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OwnParts:
-    """Diagonal body parts of the contacts: what FE has beyond the near field of each contact itself.
+class BodyParts:
+    """What the bodies of a disc yield beyond the near fields of contacts: of approaches by loads, mm/N, or of tilts by moments,
+    rad/(N·mm).
 
     Attributes
     ----------
-    pin, outer, inner, hole : float
-        Added to the interpolated diagonal of disc (pin, outer, hole) and race (inner), mm/N.
-    tilting : OwnParts or None
-        The same of tilts by moments, rad/(N·mm), of solid bodies.
+    coefficients : InfluenceCoefficients
+        Between the contacts.
+    alone : array, shape (3,)
+        What a pin, a roller in its bore and a hole with the spring behind it yield by themselves, added to the diagonal.
+    race : array, shape (rollers, rollers)
+        Between the inner contacts of the rollers, which feel those on their own race alone, with that of each by itself.
+    unit : float
+        Square of what tilts are multiplied by, mm², 1 for approaches.
     """
 
-    pin: float
-    outer: float
-    inner: float
-    hole: float
-    tilting: OwnParts | None = None
+    coefficients: InfluenceCoefficients
+    alone: FloatArray
+    race: FloatArray
+    unit: float
 
     @classmethod
     def of_drive(
@@ -203,26 +150,16 @@ class OwnParts:
         geometry: ContactGeometry,
         coefficients: InfluenceCoefficients,
         near_field: NearField,
-        datum: float,
         *,
-        elastic_shaft_pins: bool = False,
-    ) -> OwnParts:
-        """Return the diagonal parts.
+        elastic_shaft_pins: bool,
+        hole_spring: float,
+        tilts: bool,
+    ) -> BodyParts:
+        """Return the parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length.
 
-        Parameters
-        ----------
-        drive : Drive
-            The drive.
-        geometry : ContactGeometry
-            Its contact geometry.
-        coefficients : InfluenceCoefficients
-            Of its bodies, rollers as long as they are (`InfluenceCoefficients.with_roller_length`).
-        near_field : {"plane-strain", "half-space"}
-            What the laws of the contacts hold.
-        datum : float
-            D, where a near field in plane strain hands over, mm.
-        elastic_shaft_pins : bool
-            Whether bare shaft pins yield where the near field of the holes is.
+        Rollers of the `coefficients` are as long as they are (`InfluenceCoefficients.with_roller_length`);
+        `elastic_shaft_pins` are bare ones that yield where the near field of the holes is, `hole_spring` is what stands behind
+        that, mm/N, which is rigid against moments.
 
         Notes
         -----
@@ -234,94 +171,71 @@ class OwnParts:
         `projected_on_half_space` of the even and of the linear load, plane strain the same of both, 12/t² κ of the linear one.
         Of a line of one slice, a half-space without images, comes off what leaves an aligned line what it has with many.
         """
-        even = _own_parts(drive, geometry, coefficients, near_field, datum, elastic_shaft_pins, tilts=False)
-        if coefficients.tilting is None:
-            return even
-        tilting = _own_parts(drive, geometry, coefficients.tilting, near_field, datum, elastic_shaft_pins, tilts=True)
-        return replace(even, tilting=tilting)
+        parts, bearing, shaft, c = drive.materials, drive.crank_bearing, drive.pin_shaft, coefficients
+        place, thickness, length = geometry.placement, drive.disc.thickness, drive.roller_length
+        load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+        datum, several = plane_strain_datum(drive), drive.contact.slices > 1
 
+        def unit(material: Material, thickness: float, plane: str = "strain") -> float:
+            return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
 
-def _own_parts(
-    drive: Drive,
-    geometry: ContactGeometry,
-    coefficients: InfluenceCoefficients,
-    near_field: NearField,
-    datum: float,
-    elastic_shaft_pins: bool,
-    *,
-    tilts: bool,
-) -> OwnParts:
-    """Diagonal parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length."""
-    parts, bearing, c = drive.materials, drive.crank_bearing, coefficients
-    place = geometry.placement
-    load = 0.5 * abs(drive.wheel_moment()) / (float(place.mean_eccentricity[0]) * place.reduction_ratio)
+        def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
+            if body == 0.0:
+                return 0.0
+            joined = -body * np.log(datum)
+            if near_field == "plane-strain":
+                return float(joined)
+            half_width = float(line_half_width(load / thickness, radius, modulus))
+            if c.plane != SOLID:
+                of_length = finite_length_approach(thickness, half_width)
+            else:
+                images = (FreeEnds(reach=1.0, weight=guilbault_factor(material.poisson_ratio)),)
+                of_length = projected_on_half_space(thickness, half_width, images if several else ())[int(tilts)]
+                if not several:
+                    of_length -= redistributed_approach(thickness, half_width)
+                    of_length += redistributed_approach(thickness, half_width, images)
+            held = material.plane_strain_compliance * of_length
+            return float(joined + unit(material, thickness) * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
 
-    def unit(material: Material, thickness: float, plane: str = "strain") -> float:
-        return logarithm_factor(material, thickness, plane) * (12.0 / thickness**2 if tilts else 1.0)
-
-    several = drive.contact.slices > 1
-
-    def remove(body: float, material: Material, radius: float, modulus: float, thickness: float) -> float:
-        if body == 0.0:
-            return 0.0
-        joined = -body * np.log(datum)
-        if near_field == "plane-strain":
-            return float(joined)
-        half_width = float(line_half_width(load / thickness, radius, modulus))
-        factor = unit(material, thickness)
-        if c.plane != SOLID:
-            of_length = finite_length_approach(thickness, half_width)
-        else:
-            images = (FreeEnds(reach=1.0, weight=guilbault_factor(material.poisson_ratio)),)
-            of_length = projected_on_half_space(thickness, half_width, images if several else ())[1 if tilts else 0]
-            if not several:
-                of_length -= redistributed_approach(thickness, half_width)
-                of_length += redistributed_approach(thickness, half_width, images)
-        held = material.plane_strain_compliance * of_length
-        return float(joined + factor * (np.log(2.0 * datum / half_width) + SELF_ENERGY) - held)
-
-    thickness, length = drive.disc.thickness, drive.roller_length
-    # Where the pitch circle cuts the flank the pins carry most.
-    steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
-    at_pin = (
-        float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
-        contact_modulus(parts.disc, drive.flank_pin),
-    )
-    in_bore = (
-        effective_radius(bearing.roller_radius, -drive.bore_radius),
-        contact_modulus(parts.disc, parts.roller),
-    )
-    on_race = (
-        effective_radius(bearing.roller_radius, bearing.inner_race_radius),
-        contact_modulus(parts.inner_race, parts.roller),
-    )
-    shaft = drive.pin_shaft
-    in_hole = (
-        1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
-        hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
-    )
-    sleeved = drive.pin_wheel.seat.kind == "sleeve"  # whose law has all of it (`ltca.laws.backed`)
-    disc, pin, roller, race = c.disc_logarithm, c.pin_logarithm, c.roller_logarithm, c.race_logarithm
-    whole_pin = c.pin + remove(pin, drive.flank_pin, *at_pin, thickness)
-    hole = remove(disc, parts.disc, *in_hole, thickness)
-    if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
-        own = unit(parts.shaft_pin, thickness, c.plane)
-        nu = parts.shaft_pin.poisson_ratio
-        hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
-        if c.plane == SOLID and shaft.beam is None:
-            # On its spring it ends with the disc; as a beam it goes on.
-            hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[1 if tilts else 0]
-        hole += remove(own, parts.shaft_pin, *in_hole, thickness)
-    return OwnParts(
-        pin=remove(disc, parts.disc, *at_pin, thickness) + (0.0 if sleeved else whole_pin),
-        outer=remove(disc, parts.disc, *in_bore, thickness)
-        + float(c.roller[1, 1])
-        + remove(roller, parts.roller, *in_bore, length),
-        inner=remove(race, parts.inner_race, *on_race, thickness)
-        + float(c.roller[0, 0])
-        + remove(roller, parts.roller, *on_race, length),
-        hole=hole,
-    )
+        # Where the pitch circle cuts the flank the pins carry most.
+        steep = np.array([0.25 * 2.0 * np.pi / drive.reduction_ratio])
+        at_pin = (
+            float(geometry.profile.effective_radius(steep, drive.pin_wheel.pin_radius)[0]),
+            contact_modulus(parts.disc, drive.flank_pin),
+        )
+        in_bore = (
+            effective_radius(bearing.roller_radius, -drive.bore_radius),
+            contact_modulus(parts.disc, parts.roller),
+        )
+        on_race = (
+            effective_radius(bearing.roller_radius, bearing.inner_race_radius),
+            contact_modulus(parts.inner_race, parts.roller),
+        )
+        in_hole = (
+            1.0 if shaft is None else effective_radius(shaft.pin_radius, -drive.hole_radius),
+            hole_modulus(drive, rigid_shaft_pins=not elastic_shaft_pins),
+        )
+        disc, roller = c.disc_logarithm, c.roller_logarithm
+        pin, outer, hole = (remove(disc, parts.disc, *at, thickness) for at in (at_pin, in_bore, in_hole))
+        if drive.pin_wheel.seat.kind != "sleeve":  # whose law has all of it (`ltca.laws.backed`)
+            pin += c.pin + remove(c.pin_logarithm, drive.flank_pin, *at_pin, thickness)
+        if shaft is not None and elastic_shaft_pins and disc > 0.0:  # without coupling there is no body part at all
+            own, nu = unit(parts.shaft_pin, thickness, c.plane), parts.shaft_pin.poisson_ratio
+            hole += own * carried_cylinder(shaft.pin_radius, nu, c.plane)
+            if c.plane == SOLID and shaft.beam is None:
+                # On its spring it ends with the disc; as a beam it goes on.
+                hole += own * free_ends_of_cylinder(shaft.pin_radius, thickness, nu)[int(tilts)]
+            hole += remove(own, parts.shaft_pin, *in_hole, thickness)
+        outer += float(c.roller[1, 1]) + remove(roller, parts.roller, *in_bore, length)
+        inner = remove(c.race_logarithm, parts.inner_race, *on_race, thickness)
+        inner += float(c.roller[0, 0]) + remove(roller, parts.roller, *on_race, length)
+        race = c.race_matrix(place.roller_cage_angles, float(place.inner_race_radius))
+        return cls(
+            coefficients=c,
+            alone=np.array((pin, outer, hole if tilts else hole + hole_spring)),
+            race=race + inner * np.eye(race.shape[0]),
+            unit=(0.5 * thickness) ** 2 if tilts else 1.0,
+        )
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
@@ -334,21 +248,10 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
     .. math:: A = \kappa_l \left( \ln\frac{2R}{b} + \frac14 - \frac{\kappa + 2}{2(\kappa + 1)} \right), \qquad
               \kappa_l = \frac{2(1 - \nu^2)}{\pi E t},
 
-    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, (3 − ν)/(1 + ν) in plane stress (without ν in κ_l).
-
-    Parameters
-    ----------
-    radius : float
-        R, mm.
-    poisson_ratio : float
-        ν.
-    plane : {"strain", "stress", "solid"}
-        Plane strain, which slices of a solid pin are in as well, or plane stress.
-
-    Returns
-    -------
-    float
-        A/κ_l + ln(b/2) − 1/4: what is left when the logarithm of a patch on itself is taken off, in mm under the logarithm.
+    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, in which slices of a solid pin are as well, (3 − ν)/(1 + ν) in plane
+    stress (without ν in κ_l). What is returned is
+    :math:`A/\kappa_l + \ln(b/2) - 1/4`: what is left when the logarithm of a patch on itself is taken off, in mm under the
+    logarithm.
 
     Examples
     --------
@@ -363,17 +266,8 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
 def finite_length_approach(length: float, half_width: float) -> float:
     """Return the mean displacement of a half-space over a patch of finite length, times E/(1 − ν²) per load, 1/mm.
 
-    Parameters
-    ----------
-    length : float
-        L, mm.
-    half_width : float
-        b at mid-length, mm.
-
-    Returns
-    -------
-    float
-        Pressure-weighted mean over the patch pressed by a straight cylinder: its approach less the mean separation.
+    It is the pressure-weighted mean over the patch pressed by a straight cylinder of that length L, mm, with the half-width b,
+    mm, at mid-length: its approach less the mean separation.
     """
     law = LineContactLaw(length, 1.0)
     # Newton's method on ln δ = ln b² + ln m(ln(δ/L²)) at a radius of 1: m = ρδ/b² goes from 0.5 to 10 over all of the law, so
@@ -436,20 +330,8 @@ def projected_on_half_space(
     To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of
     plane strain with the datums 2t/e and 2t/e^{7/3}.
 
-    Parameters
-    ----------
-    length : float
-        t, mm.
-    half_width : float
-        b, mm.
-    free_ends : tuple of FreeEnds
-        Of the body, whose images count as well: at the distances :math:`s` of points and images both loads have the densities of
-        sums of two evenly or linearly spread heights.
-
-    Returns
-    -------
-    tuple of float
-        Of the even load by 1 N and of the linear one by 1 N·mm.
+    t is the `length` and b the `half_width`, mm. Images of `free_ends` of the body count as well: at the distances :math:`s` of
+    points and images both loads have the densities of sums of two evenly or linearly spread heights.
 
     Examples
     --------

@@ -1,14 +1,13 @@
 """Flexibility of what holds pins: beams under several discs, and the ring of the pin wheel under all its pins.
 
-What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S. It is a sum: a pin is one beam under the
-forces of all discs (`ltca.beam`), and the ring moves every pin by the forces on all of them, summed over the discs
-(`ltca.compliance.ring`). Displacements of wheel pins are those in the turning wheel, so S does not turn. What a disc's own force
-makes a beam yield lies along the common normal, in series with the contact, and is part of its law (`ltca.laws.backed`).
+What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S: a pin is one beam under the forces of all
+discs (`ltca.beam`), and the ring moves every pin by the forces on all of them, summed over the discs (`ltca.compliance.ring`).
+Displacements of wheel pins are those in the turning wheel, so S does not turn. What a disc's own force makes a beam yield lies
+along the common normal, in series with the contact, and is part of its law (`ltca.laws.backed`).
 
-In slices a disc presses a pin with a moment as well, and the pin leans where it stands in the disc. Leans are kept as
-displacements at half the thickness of the disc and moments as forces there, behind those of all discs, so that S stays one
-symmetric matrix: the slope under a force is the deflection under a moment. All that a beam bends is in S then, also under its
-own disc and in a drive of one disc, and laws are those of the contacts alone. A ring moves seats and does not lean them.
+In slices a disc presses a pin with a moment as well, and the pin leans. Leans are kept as displacements at half the thickness
+of the disc and moments as forces there, behind those of all discs, so that S stays symmetric. All that a beam bends is in S
+then, also under its own disc. A ring moves seats and does not lean them.
 """
 
 from __future__ import annotations
@@ -32,8 +31,7 @@ class PinDisplacements:
     ----------
     beams : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
         Deflection of each pin at disc d under a unit force of disc d', wheel pins before shaft pins, mm/N; zero for d = d', and
-        for pins that do not bend. Where pins lean, those of leans and moments by half the thickness of the discs follow, and
-        d = d' is not zero.
+        for pins that do not bend. Where pins lean, leans and moments follow, and d = d' is not zero.
     ring : array, shape (z_P, 2, z_P, 2) or (positions, z_P, 2, z_P, 2), or None
         Displacement (x, y) of the seats of the wheel pins in the wheel under unit forces at the seats, mm/N.
     leans : bool

@@ -1,13 +1,9 @@
 """Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their loads.
 
-A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the
-disc, Hertz's as long as its half-width is small against the pin. Who yields there is what the model's load law says:
-
-- The pin on a spring alone (half-space models, and the others without the near field of the hole): the spring says
-  nothing of the contact, so the pressure is that of the real materials, E* of disc and shaft pin.
-- The pin that yields at its contact, ``pin_shaft.elastic_contact`` (``fe`` and ``hybrid``, as in full FE): E* of both.
-- A rigid pin against the yielding wall, where that field is false: E* of the disc alone. For a pin of the disc's
-  material that is √2 of the other at the same load, on the safe side.
+A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the disc,
+Hertz's as long as its half-width is small against the pin. Where a spring stands for all that yields there, and for elastic
+pins of ``fe`` and ``hybrid``, E* is that of disc and shaft pin; where ``pin_shaft.elastic_contact`` is false it is that of the
+disc alone, √2 of the other pressure for a pin of the disc's material, on the safe side.
 """
 
 from __future__ import annotations
@@ -18,7 +14,7 @@ import numpy as np
 
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
-from ltca.compliance.response import AlongWidth, ContactPressures, DiscResponse, KindPressures
+from ltca.compliance.response import AlongWidth, ContactPressures, DiscContacts, DiscResponse, KindPressures
 from ltca.contact.contact_kind import ContactKind, ContactKinds
 from ltca.contact.end_pressure import largest_pressure_ratio
 from ltca.geometry.placement import Placement
@@ -48,14 +44,33 @@ def pressures_of_law(
     return KindPressures(mid=mid, largest=largest, half_width=half_width, end_cell=ends.end_cell)
 
 
-def elastic_hole_pressures(kind: ContactKind, load: FloatArray, place: Placement) -> KindPressures:
-    """Return pressures and half-widths of elastic shaft pins in their holes by their loads, N, shape (positions, holes).
-
-    The bodies are half-spaces of finite length, E* that of disc and shaft pin.
+def pressures_in_plane(
+    contacts: DiscContacts,
+    response: DiscResponse,
+    pins: FloatArray,
+    outer: FloatArray,
+    inner: FloatArray,
+    *,
+    ends: bool = True,
+) -> ContactPressures:
+    """Return pressures and half-widths of contacts in the plane: of wheel pins and rollers at approaches to the laws of the
+    contacts, mm, of shaft pins and holes by their loads. Without `ends` contacts are in plane strain.
     """
-    law, radius = LineContactLaw(kind.length, kind.contact_modulus), place.hole_effective_radii
-    approach, _ = law.approach_at_load(load, radius)
-    return pressures_of_law(law, kind, approach, radius)
+    kinds, (_, outer_radius, hole_radius, inner_radius) = contacts.kinds, contacts.contact_laws
+    holes, _ = contacts.hole_law.approach_at_load(response.hole_load, hole_radius)
+    each = (
+        pressures_of_law(law, kind if ends else None, approach, radius)
+        for law, kind, approach, radius in (
+            (contacts.pin_law, kinds.pins, pins, response.flank.effective_radius),
+            (contacts.outer_law, kinds.outer, outer, outer_radius),
+            (contacts.inner_law, kinds.inner, inner, inner_radius),
+            (contacts.hole_law, kinds.holes, holes, hole_radius),
+        )
+    )
+    at_pins, in_bores, on_races, at_holes = each
+    return ContactPressures(
+        pins=at_pins, outer=in_bores, inner=on_races, holes=at_holes, rigid_shaft_pins=contacts.rigid_shaft_pins
+    )
 
 
 def pressures_in_slices(

@@ -6,14 +6,16 @@ carry together, and `ltca.equilibrium.reducer` adds what holds them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, Result, map_arrays
 from ltca.compliance.coefficients import InfluenceCoefficients
+from ltca.contact.contact_kind import ContactKinds
 from ltca.geometry.coordinates import DISC_PLACE, X, Y
 from ltca.geometry.pair_motion import FlankMotion, KnownPins, PairMotion, PairTilt, RollerRays
 from ltca.geometry.pairs import ContactGeometry
@@ -24,16 +26,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaningRollers:
-    """Balanced rollers in slices.
+    """Balanced rollers in slices, arrays (positions, rollers), rad.
 
-    Attributes
-    ----------
-    lean : array, shape (positions, rollers)
-        Along their rays, rad.
-    inner_tilt, outer_tilt : array, shape (positions, rollers)
-        Tilts of their contacts, rad, positive presses positive z.
-    inner, outer : SlicedContact
-        What these carry, moments about mid-length; that on the disc acts along the ray.
+    They lean along their rays and tilt in their contacts, positive presses positive z; moments are about mid-length, that on the
+    disc acts along the ray.
     """
 
     lean: FloatArray
@@ -45,17 +41,17 @@ class LeaningRollers:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollerState:
-    """Balanced rollers, crank after crank.
+    """Balanced rollers, crank after crank, arrays (positions, rollers).
 
     Attributes
     ----------
-    share : array, shape (positions, rollers)
+    share : array
         Part of the total interference taken by the inner contact.
-    inner_approach, outer_approach : array, shape (positions, rollers)
+    inner_approach, outer_approach : array
         mm, negative where open; a free roller rests on the inner race.
-    inner_load, outer_load : array, shape (positions, rollers)
+    inner_load, outer_load : array
         N.
-    outer_direction : array of complex, shape (positions, rollers)
+    outer_direction : array of complex
         Unit vector from the bore centre to the roller, the direction of the load on the disc.
     leaning : LeaningRollers or None
         Rollers in slices; None in the plane.
@@ -72,51 +68,30 @@ class RollerState:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaningPairs:
-    """Pairs of one kind in slices.
-
-    Attributes
-    ----------
-    tilt : PairTilt
-        How they tilt.
-    contact : SlicedContact
-        What they carry.
-    """
+    """Pairs of one kind in slices: how they tilt, and what they carry."""
 
     tilt: PairTilt
     contact: SlicedContact
 
-    @property
-    def kept(self) -> LeaningPairs:
-        """The pairs without what a search alone asks for."""
-        return replace(self, contact=self.contact.kept)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscResponse:
-    """Contacts of one disc in a batch of positions at given poses.
+    """Contacts of one disc in a batch of positions at given poses; of wheel pins before shaft pins where both are pairs.
 
     Attributes
     ----------
     force : array, shape (positions, coordinates)
         Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
-    flank : FlankMotion
-        Kinematics of the wheel pins.
-    holes : PairMotion
-        Kinematics of the pin holes.
-    rollers : RollerState
-        Balanced rollers.
     pin_load, hole_load : array, shape (positions, pairs)
         N.
-    shifts : array of complex, shape (positions, pairs), or None
-        Displacements of wheel pins and shaft pins, mm: what the parts that hold them yield.
-    leans : array of complex, shape (positions, pairs), or None
-        Leans of wheel pins and shaft pins at the disc in slices, rad.
+    shifts, leans : array of complex, shape (positions, pairs), or None
+        Displacements of pins, mm, by the parts that hold them; in slices their leans at the disc, rad.
     ring : array of complex, shape (positions, z_P), or None
         What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
     friction : array, shape (positions, pairs), or None
-        Forces of wheel pins and shaft pins along their tangents, N; None without friction.
+        Forces of pins along their tangents, N; None without friction.
     leaning_pins, leaning_holes : LeaningPairs or None
-        Wheel pins and shaft pins in slices; None in the plane.
+        Pins in slices; None in the plane.
     deformation : array, shape (positions, components, contacts), or None
         Of contacts that bodies couple, what their own laws take of the approaches and, in slices, of the tilts at half the
         thickness of the disc, mm: wheel pins, rollers in the bores, holes, rollers on the races.
@@ -137,23 +112,20 @@ class DiscResponse:
     deformation: FloatArray | None = None
 
     @property
-    def kept(self) -> DiscResponse:
-        """The response of balanced positions without what the search alone asks for."""
-        pins, holes = (None if one is None else one.kept for one in (self.leaning_pins, self.leaning_holes))
-        return replace(self, leaning_pins=pins, leaning_holes=holes)
-
-    @property
     def pin_forces(self) -> ComplexArray:
         """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs).
 
         In slices normals turn along the width where pairs tilt across them, by which moments press across as well.
         """
-        load = np.concatenate((self.pin_load, self.hole_load), axis=1)
-        normal, along = (
-            np.concatenate((getattr(self.flank, name), getattr(self.holes, name)), axis=1)[..., DISC_PLACE]
-            for name in ("gradient", "along")
+        load, normal, along = (
+            np.concatenate(both, axis=1)
+            for both in (
+                (self.pin_load, self.hole_load),
+                (self.flank.gradient, self.holes.gradient),
+                (self.flank.along, self.holes.along),
+            )
         )
-        force = load[..., None] * normal
+        force = load[..., None] * normal[..., DISC_PLACE]
         if self.leaning_pins is not None and self.leaning_holes is not None:
             turned = [
                 pairs.contact.moment[..., None] * pairs.tilt.gradient[..., DISC_PLACE]
@@ -161,7 +133,7 @@ class DiscResponse:
             ]
             force = force + np.concatenate(turned, axis=1)
         if self.friction is not None:
-            force = force + self.friction[..., None] * along
+            force = force + self.friction[..., None] * along[..., DISC_PLACE]
         return np.asarray(force[..., 0] + 1j * force[..., 1])
 
     @property
@@ -187,14 +159,13 @@ class DiscResponse:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Response(DiscResponse):
-    """Contacts of all discs of a reducer, disc after disc: of n discs array axes for pairs are n times as long.
-
-    Force and tangent are those of the reducer; ``shifts`` has the shape (positions, discs, pairs), and friction is that of the
-    parts.
+class Response:
+    """Contacts of all discs of a reducer: of n discs array axes for pairs are n times as long, disc after disc.
 
     Attributes
     ----------
+    force : array, shape (positions, coordinates)
+        Generalised force of the reducer, of `ltca.geometry.coordinates`: N and N·mm.
     parts : tuple of DiscResponse
         Of each disc, by its own pose.
     tangent : array, shape (positions, coordinates, coordinates)
@@ -203,20 +174,49 @@ class Response(DiscResponse):
         Diagonal of the tangent without supports.
     left : array, shape (positions,)
         Force that contacts, or displacements of pins, which have not settled amount to, N.
+    shifts : array of complex, shape (positions, discs, pairs), or None
+        Displacements of wheel pins and shaft pins, mm: what the parts that hold them yield.
     inner : Inner or None
         Inner unknowns beside the pose; None of one disc of several.
     """
 
+    force: FloatArray
     parts: tuple[DiscResponse, ...]
     tangent: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
     contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
     left: FloatArray = field(default_factory=lambda: np.zeros(0))
+    shifts: ComplexArray | None = None
     inner: Inner | None = None
 
-    @classmethod
-    def of_disc(cls, part: DiscResponse) -> Response:
-        """Return the contacts of one disc as those of a reducer that has no other."""
-        return cls(**{item.name: getattr(part, item.name) for item in fields(DiscResponse)}, parts=(part,))
+    @property
+    def flank(self) -> FlankMotion:
+        """Kinematics of the wheel pins of all discs."""
+        return beside([part.flank for part in self.parts])
+
+    @property
+    def holes(self) -> PairMotion:
+        """Kinematics of the pin holes of all discs."""
+        return beside([part.holes for part in self.parts])
+
+    @property
+    def rollers(self) -> RollerState:
+        """Balanced rollers of all discs."""
+        return beside([part.rollers for part in self.parts])
+
+    @property
+    def pin_load(self) -> FloatArray:
+        """Loads of the wheel pins of all discs, N, shape (positions, pairs)."""
+        return beside([part.pin_load for part in self.parts])
+
+    @property
+    def hole_load(self) -> FloatArray:
+        """Loads of the shaft pins of all discs, N, shape (positions, pairs)."""
+        return beside([part.hole_load for part in self.parts])
+
+    @property
+    def ring(self) -> ComplexArray | None:
+        """What the ring of the wheel moves the wheel pins (`DiscResponse`)."""
+        return self.parts[0].ring
 
     @property
     def start(self) -> Start:
@@ -231,21 +231,28 @@ class Response(DiscResponse):
     @property
     def kept(self) -> Response:
         """The response of balanced positions without what the search alone asks for, which is two fifths of one on a ring."""
-        inner = None if self.inner is None else self.inner.kept
-        return replace(self, inner=inner, parts=tuple(part.kept for part in self.parts))
+        return self if self.inner is None else replace(self, inner=self.inner.kept)
+
+
+def beside(values: Sequence[Result]) -> Result:
+    """Put arrays (positions, pairs, …), or trees of them, of several discs side by side."""
+    found: Result = (
+        values[0] if len(values) == 1 else map_arrays(lambda *arrays: np.concatenate(arrays, axis=1), *values)
+    )
+    return found
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongWidth:
-    """What all pairs of one kind in slices carry along their width, zero where open.
+    """What all pairs of one kind in slices carry along their width, arrays (positions, pairs, slices), zero where open.
 
     Attributes
     ----------
-    line_load : array, shape (positions, pairs, slices)
+    line_load : array
         Mean over each slice, N/mm.
-    even_line_load : array, shape (positions, pairs, slices)
+    even_line_load : array
         The same without the bulge of ends that carry: by what slices of an aligned straight line do by its middle, N/mm.
-    pressure, half_width : array, shape (positions, pairs, slices)
+    pressure, half_width : array
         Largest over the profile and half-width in the middle of each slice, MPa and mm.
     place : array, shape (positions, pairs)
         Height of the largest pressure anywhere above the middle of the contact, mm.
@@ -263,17 +270,15 @@ class AlongWidth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KindPressures:
-    """Pressures and half-widths of all pairs of one kind, zero where open.
+    """Pressures and half-widths of all pairs of one kind, shape (positions, pairs), zero where open.
 
     Attributes
     ----------
-    mid : array, shape (positions, pairs)
-        Largest pressure at mid-width, MPa.
-    largest : array, shape (positions, pairs)
+    mid, half_width : array
+        Largest pressure at mid-width, MPa, and contact half-width there, mm.
+    largest : array
         Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell. Not a number
         in plane strain, which has no ends.
-    half_width : array, shape (positions, pairs)
-        Contact half-width at mid-width, mm.
     end_cell : float
         Length of the end cell behind `largest`, mm; not a number where that is none.
     along : AlongWidth or None
@@ -294,18 +299,9 @@ class KindPressures:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactPressures:
-    """Pressures of all contacts.
+    """Pressures of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
 
-    Attributes
-    ----------
-    pins : KindPressures
-        Wheel pins and flank.
-    outer, inner : KindPressures
-        Rollers in the bore and on the inner race.
-    holes : KindPressures
-        Shaft pins and holes (`ltca.compliance.pressures`).
-    rigid_shaft_pins : bool
-        Whether those are the pressures of rigid shaft pins: E* of the disc alone.
+    With `rigid_shaft_pins` the last are those of rigid shaft pins: E* of the disc alone (`ltca.compliance.pressures`).
     """
 
     pins: KindPressures
@@ -336,36 +332,61 @@ class DiscModel(Protocol):
     @property
     def geometry(self) -> ContactGeometry:
         """The contact geometry of the disc in its drive."""
-        ...
 
     @property
     def coefficients(self) -> InfluenceCoefficients | None:
         """Coefficients by which the contacts of the disc feel each other; None where they do not."""
-        ...
 
     @property
     def contact_laws(self) -> ContactLaws:
         """Laws of the contacts."""
-        ...
-
-    @property
-    def grids_can_check(self) -> bool:
-        """Whether contact grids, with the true separation of the surfaces, answer the same where separations are parabolas."""
-        ...
 
     def pressures(self, response: DiscResponse) -> ContactPressures:
         """Return the pressures behind a response of this model."""
-        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiscContacts:
+    """Geometry of the contacts of a disc, their laws, and what pressures are read by.
+
+    Attributes
+    ----------
+    pin_law, outer_law, inner_law, hole_law : ContactLaw, or law in slices
+        Of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
+    kinds : ContactKinds
+        Lengths and profiles of the contacts.
+    rigid_shaft_pins : bool
+        Whether shaft pins are rigid where they touch their holes.
+    """
+
+    geometry: ContactGeometry
+    pin_law: Any
+    outer_law: Any
+    inner_law: Any
+    hole_law: Any
+    kinds: ContactKinds
+    rigid_shaft_pins: bool = False
+
+    @property
+    def contact_laws(self) -> ContactLaws:
+        """Laws of the contacts."""
+        place = self.geometry.placement
+        return ContactLaws(
+            (self.pin_law, self.outer_law, self.hole_law, self.inner_law),
+            place.outer_effective_radii,
+            place.hole_effective_radii,
+            place.inner_effective_radii,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inner:
-    """What is unknown beside the pose, as it was found at some pose, and how it follows the pose to first order.
+    """Inner unknowns beside the pose, as they were found at some pose, and how they follow the pose to first order.
 
     Attributes
     ----------
     pose : array, shape (positions, coordinates)
-        Where it was found.
+        Where they were found.
     place, lean : array, shape (positions, rollers)
         Of the rollers: inward from where they only touch the race, and lean along their rays by half the thickness of the disc,
         zero in the plane, mm; not a number where they are not known.
@@ -374,7 +395,7 @@ class Inner:
     shifts : array of complex, shape (positions, rows, pairs), or None
         Displacements u of the pins, mm; None where none is known.
     near : tuple of array
-        What the laws of each disc and kind start from nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
+        Where the laws of each disc and kind start nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
     by_pose, approach_by_pose, shifts_by_pose : array or None
         Derivatives by the pose; None where they are not known.
     columns : tuple of tuple of int
@@ -447,12 +468,16 @@ class Start:
     @classmethod
     def after(cls, response: Response) -> Start:
         """Return the start that a response gives for poses near it, also of other drives and angles."""
-        return cls(parameter=response.flank.parameter, share=response.rollers.share, inner=response.inner)
+        parameter = beside([part.flank.parameter for part in response.parts])
+        return cls(
+            parameter=parameter, share=beside([part.rollers.share for part in response.parts]), inner=response.inner
+        )
 
     @classmethod
     def onward(cls, response: Response) -> Start:
         """Return the start for other poses of the same positions, also of drives nearly alike."""
-        known = KnownPins(point=response.flank.point, turning=response.flank.turning)
+        flank = response.flank
+        known = KnownPins(point=flank.point, turning=flank.turning)
         return replace(cls.after(response), known=known)
 
 

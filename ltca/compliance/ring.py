@@ -14,7 +14,6 @@ the even part of the pressure :math:`p = \sum p_n \cos n\theta` of the unit forc
 from __future__ import annotations
 
 import sys
-from functools import partial
 from math import pi
 from pathlib import Path
 
@@ -43,17 +42,12 @@ MAX_KNOWN = 16
 
 
 def ring_flexibility(drive: Drive, lender: Drive | None = None) -> FloatArray | None:
-    """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
+    """Return displacements of the seats of the wheel pins of a drive under unit forces there, mm/N; None where the ring is rigid.
 
-    Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced: errors
-    of single seats are far too small to matter here. A ring of finite elements has the shape of that of the `lender`, if one is
-    given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`); modulus, width and stiffness of the bolts
-    are its own.
-
-    Raises
-    ------
-    CycloError
-        When the ring is of finite elements and nothing is installed that derives them.
+    Shape (z_P, 2, z_P, 2) by seat and component in the wheel; seats are evenly spaced. A ring of finite elements has the shape
+    of that of the `lender`, if one is given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`);
+    modulus, width and stiffness of the bolts are its own. Raises `CycloError` where it has to be derived and nothing is
+    installed for that.
     """
     if not has_ring_of_elements(drive):
         return beam_flexibility(drive)
@@ -68,7 +62,7 @@ def _of_elements(drive: Drive, lender: Drive) -> FloatArray:
     assert ring is not None
     assert own is not None
     unit = 1.0 / (own.material.youngs_modulus * own.width)
-    among, pins = unit * _known(lender), wheel.number_of_pins
+    among, pins = unit * known_ring(lender), wheel.number_of_pins
     seats = 2.0 * pi * np.arange(pins) / pins
     places, radii = seats, np.full(pins, wheel.pin_circle_radius)
     if ring.flange == "built-in":
@@ -94,24 +88,26 @@ def expected_ring_seconds(drive: Drive) -> float:
     return SECONDS_PER_PIN * drive.pin_wheel.number_of_pins
 
 
-def derive_beforehand(drive: Drive) -> None:
-    """Derive the plane ring of a drive, so that it is found; CycloError where that cannot be."""
-    _known(drive)
-
-
-def _known(drive: Drive) -> FloatArray:
-    """The content of the file of a drive's ring, found once in a process."""
+def known_ring(drive: Drive) -> FloatArray:
+    """Return the content of the file of a drive's ring, found or derived once in a process; CycloError where that cannot be."""
     key = ring_fingerprint(drive)
     if key not in _KNOWN:
         while len(_KNOWN) >= MAX_KNOWN:
             del _KNOWN[next(iter(_KNOWN))]
-        _KNOWN[key] = _found(drive)
+        _KNOWN[key] = _kept_or_derived(drive)
     return _KNOWN[key]
 
 
-def _found(drive: Drive) -> FloatArray:
+def _kept_or_derived(drive: Drive) -> FloatArray:
     """The same from the cache, or newly derived and kept there."""
-    name, read = file_name(drive), partial(_read, drive)
+    name = file_name(drive)
+
+    def read(path: Path) -> FloatArray:
+        dataset = read_ring(path)
+        require_same_ring(dataset, drive, str(path))
+        found: FloatArray = dataset["flexibility"].values.astype(float)
+        return found
+
     if (found := read_kept(name, read)) is not None:
         return found
     derive = derivation(DERIVATION)
@@ -126,13 +122,6 @@ def _found(drive: Drive) -> FloatArray:
         )
         write_ring(derive(drive), path)
     return read(kept_file(name))
-
-
-def _read(drive: Drive, path: Path) -> FloatArray:
-    dataset = read_ring(path)
-    require_same_ring(dataset, drive, str(path))
-    found: FloatArray = dataset["flexibility"].values.astype(float)
-    return found
 
 
 def file_name(drive: Drive) -> str:
@@ -162,22 +151,8 @@ def _of_slot(drive: Drive) -> FloatArray:
 def slot_yield(half_arc: float, poisson_ratio: float, datum: float) -> FloatArray:
     """Return the radial and tangential displacement of a seat in an infinite plate by a unit force on its wall, times E b.
 
-    The force acts as the normal pressure of `fem.coefficients.ring` on an arc, and the displacement is the mean with the same
-    weights, relative to the circle of `datum` radii; plane stress.
-
-    Parameters
-    ----------
-    half_arc : float
-        Half the angle of the loaded arc, rad.
-    poisson_ratio : float
-        ν.
-    datum : float
-        Radius of the circle relative to which the seat moves, by the seat's radius.
-
-    Returns
-    -------
-    array, shape (2,)
-        Radial, tangential.
+    The force acts as the normal pressure of `fem.coefficients.ring` on an arc of twice `half_arc`, rad, and the displacement is
+    the mean with the same weights, relative to the circle of `datum` radii of the seat; plane stress.
 
     Examples
     --------

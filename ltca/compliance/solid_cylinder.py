@@ -31,19 +31,9 @@ LINEAR = (
 
 
 def free_ends_of_cylinder(radius: float, length: float, poisson_ratio: float) -> tuple[float, float]:
-    """Return what an even and a linear load find more than in plane strain, by κ and 12 κ/t².
+    """Return e and e′, what an even and a linear load find more than in plane strain, by κ and 12 κ/t².
 
-    Parameters
-    ----------
-    radius, length : float
-        R and t, mm. Beyond the table, R/t of 1/16 to 1, its ends hold.
-    poisson_ratio : float
-        ν: between and beyond those of the table by the parabola through them.
-
-    Returns
-    -------
-    tuple of float
-        e and e′.
+    Beyond the table, R/t of 1/16 to 1, its ends hold; between and beyond Poisson's ratios the parabola through them.
 
     Examples
     --------

@@ -23,16 +23,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressCoefficients:
-    """Stress along the walls at stations, for a newton at each station of the influence coefficients.
+    """Stress along the walls at stations of flank, bores and holes, for a newton at each station of the influence coefficients.
 
-    Attributes
-    ----------
-    walls : tuple of Boundary
-        Stress stations of flank, bores and holes.
-    loaded : tuple of Boundary
-        Stations of the loads, in the same order.
-    stress : array, shape (stress stations, stations)
-        Tension positive, MPa/N.
+    `walls` has the stations of the stress, `loaded` those of the loads in the same order; `stress`, tension positive, MPa/N, has
+    the shape (stress stations, stations).
     """
 
     walls: tuple[Boundary, ...]
@@ -48,32 +42,8 @@ class StressCoefficients:
         return replace(self, walls=walls, loaded=loaded)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WallContacts:
-    """Contacts of one wall.
-
-    Attributes
-    ----------
-    parameter : array, shape (positions, contacts)
-        Places: θ on the flank, polar angles in the disc frame about their centres on bores and holes, rad.
-    load : array, shape (positions, contacts)
-        Into the disc, N.
-    """
-
-    parameter: FloatArray
-    load: FloatArray
-
-
 def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> StressCoefficients | None:
-    """Return the stress coefficients of a file; None where it has none.
-
-    Parameters
-    ----------
-    data : Dataset
-        Content of the file, of the right schema (`ltca.reading.coefficient_schema`).
-    loaded : tuple of Boundary
-        Its stations: flank, bores, holes.
-    """
+    """Return the stress coefficients of a file with stations on flank, bores and holes; None where it has none."""
     if "disc_stress" not in data:
         return None
     flank = loaded[0]
@@ -84,21 +54,19 @@ def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> St
     )
 
 
-def evaluate_wall_stress(coefficients: StressCoefficients, contacts: Sequence[WallContacts]) -> FloatArray:
+def evaluate_wall_stress(
+    coefficients: StressCoefficients, contacts: Sequence[tuple[FloatArray, FloatArray]]
+) -> FloatArray:
     """Return the stress along the walls at all stress stations, shape (positions, stress stations), MPa.
 
-    Parameters
-    ----------
-    coefficients : StressCoefficients
-        Of the disc.
-    contacts : sequence of WallContacts
-        Of flank, each bore and each hole. Loads in equilibrium get one answer whatever balanced the unit loads when the
-        coefficients were derived.
+    `contacts` has of flank, each bore and each hole the places (θ, or polar angles in the disc frame about its centre, rad) and
+    the loads into the disc, N, shape (positions, contacts). Loads in equilibrium get one answer whatever balanced the unit loads
+    when the coefficients were derived.
     """
-    positions = contacts[0].load.shape[0]
+    positions = contacts[0][1].shape[0]
     rows = np.arange(positions)[:, None, None]
     loads = np.zeros((positions, coefficients.stress.shape[1]))
-    for boundary, own in zip(coefficients.loaded, contacts, strict=True):
-        stations, weights = boundary.weights(own.parameter)
-        np.add.at(loads, (rows, stations), weights * own.load[..., None])
+    for boundary, (parameter, load) in zip(coefficients.loaded, contacts, strict=True):
+        stations, weights = boundary.weights(parameter)
+        np.add.at(loads, (rows, stations), weights * load[..., None])
     return np.asarray(loads @ coefficients.stress.T)

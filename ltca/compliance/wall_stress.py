@@ -8,13 +8,14 @@ own pressure left out, is what the disc adds to them: half of it to the largest 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, join_positions, take_positions
 from ltca.compliance.response import ContactPressures, DiscModel, DiscResponse
-from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
+from ltca.compliance.stress_coefficients import StressCoefficients, evaluate_wall_stress
 
 CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""
@@ -29,30 +30,20 @@ POSITIONS_PER_CHUNK = 128
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallProfile:
-    """Stress along one wall of the disc.
+    """Stress along one wall of the disc at places: θ on the flank, polar angles in the disc frame about its centre, rad.
 
-    Attributes
-    ----------
-    parameter : array, shape (places,)
-        θ on the flank, polar angle in the disc frame about its centre on a bore or hole, rad.
-    stress : array, shape (positions, places)
-        Tension positive, MPa; under a contact without the contact's own pressure.
-    clear : array of bool, shape (positions, places)
-        Farther than four half-widths from every loaded contact on the wall.
+    `stress` and `clear` have the shape (positions, places): tension positive, MPa, under a contact without the contact's own
+    pressure; and whether a place is farther than four half-widths from every loaded contact on the wall.
     """
 
     parameter: FloatArray
     stress: FloatArray
     clear: NDArray[np.bool_]
 
-    def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> tuple[FloatArray, FloatArray]:
-        """Return the largest clear stress of each position and its parameter among some places; not a number where none is."""
-        parameter = self.parameter[places]
-        stress = np.where(self.clear[:, places], self.stress[:, places], -np.inf)
-        best = np.argmax(stress, axis=1)
-        value = np.take_along_axis(stress, best[:, None], axis=1)[:, 0]
-        found = np.isfinite(value)
-        return np.where(found, value, np.nan), np.where(found, parameter[best], np.nan)
+    def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> FloatArray:
+        """Return the largest clear stress of each position among some places; not a number where none is clear."""
+        best = np.max(np.where(self.clear[:, places], self.stress[:, places], -np.inf), axis=1)
+        return np.where(np.isfinite(best), best, np.nan)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,37 +55,30 @@ class WallStresses:
 
     Attributes
     ----------
-    root, root_parameter : array, shape (positions, lobes)
-        Along the flank about each lobe root, from crest to crest, and where, θ, rad. Root k lies at θ = 2πk/z_C.
-    bore, bore_parameter : array, shape (positions,)
-        Along the bore, the largest of several bores, and where, polar angle about the centre of that bore in the disc
-        frame, rad.
-    hole, hole_parameter : array, shape (positions, z_PS)
-        Along each hole wall, and where, polar angle about its centre in the disc frame, rad.
-    pin_contact : array, shape (positions, z_P)
-        In the flank under each wheel pin, along the wall, the contact's own pressure left out; where the pin would
-        touch, if it is open.
-    roller_contact : array, shape (positions, rollers)
-        In its bore under each roller, crank after crank.
-    hole_contact : array, shape (positions, z_PS)
-        In each hole wall under its shaft pin.
+    root : array, shape (positions, lobes)
+        Along the flank about each lobe root, from crest to crest. Root k lies at θ = 2πk/z_C.
+    bore : array, shape (positions,)
+        Along the bore, the largest of several bores.
+    hole : array, shape (positions, z_PS)
+        Along each hole wall.
+    pin_contact, roller_contact, hole_contact : array, shape (positions, pairs)
+        Along the wall under each wheel pin, roller (crank after crank) and shaft pin, or where it would touch if it is open; the
+        contact's own pressure is left out.
     """
 
     root: FloatArray
-    root_parameter: FloatArray
     bore: FloatArray
-    bore_parameter: FloatArray
     hole: FloatArray
-    hole_parameter: FloatArray
     pin_contact: FloatArray
     roller_contact: FloatArray
     hole_contact: FloatArray
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _PlacedContacts(WallContacts):
-    """Contacts of one wall with what decides how near they are."""
+class _PlacedContacts(NamedTuple):
+    """Contacts of one wall, arrays (positions, contacts): places, rad, loads into the disc, N, and how near they are, mm."""
 
+    parameter: FloatArray
+    load: FloatArray
     points: ComplexArray
     half_width: FloatArray
 
@@ -107,9 +91,14 @@ def wall_stresses(
     The rotation of the disc, rad, has shape (positions,).
     """
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
-    stress = _stress_coefficients(model)
+    stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
-        return _unknown(response, lobes)
+        loads = response.pin_load, response.rollers.outer_load, response.hole_load
+        pins, rollers, holes = (np.full(load.shape, np.nan) for load in loads)
+        roots = np.full((positions, lobes), np.nan)
+        return WallStresses(
+            root=roots, bore=roots[:, 0], hole=holes, pin_contact=pins, roller_contact=rollers, hole_contact=holes
+        )
     placed = _place_contacts(model, response, pressures, disc_rotation)
     parts = [
         _reduce(model, stress, take_positions(placed, rows), lobes)
@@ -130,15 +119,10 @@ def wall_profiles(
 
     Arguments are those of `wall_stresses`; of so many places per stress station the first lies on it.
     """
-    stress = _stress_coefficients(model)
+    stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
         return ()
     return _profiles(model, stress, _place_contacts(model, response, pressures, disc_rotation), refinement)[0]
-
-
-def _stress_coefficients(model: DiscModel) -> StressCoefficients | None:
-    """Return the stress coefficients of a disc; None where it has none, or no body."""
-    return None if model.coefficients is None else model.coefficients.stress
 
 
 def _place_contacts(
@@ -159,12 +143,10 @@ def _place_contacts(
         (holes.shape[1], holes, response.hole_load, hole_points, pressures.holes),
     )
     return tuple(
-        _PlacedContacts(parameter=parameter, load=load, points=points, half_width=half_width)
+        _PlacedContacts(*of_wall)
         for walls, *each, pressed in kinds
         if walls
-        for parameter, load, points, half_width in zip(
-            *(np.split(one, walls, axis=1) for one in (*each, pressed.half_width)), strict=True
-        )
+        for of_wall in zip(*(np.split(one, walls, axis=1) for one in (*each, pressed.half_width)), strict=True)
     )
 
 
@@ -175,7 +157,7 @@ def _profiles(
     place = model.geometry.placement
     centres = np.concatenate((place.bore_centres, place.hole_centres))
     radii = np.concatenate((np.full(place.cranks, place.bore_radius), place.hole_radii))
-    stress = evaluate_wall_stress(coefficients, placed)
+    stress = evaluate_wall_stress(coefficients, [(own.parameter, own.load) for own in placed])
     profiles = []
     for number, (wall, own) in enumerate(zip(coefficients.walls, placed, strict=True)):
         parameter = wall.parameters(refinement)
@@ -198,41 +180,16 @@ def _reduce(
     profiles, stress = _profiles(model, coefficients, placed, REFINEMENT)
     flank, *round_walls = profiles
     nearest = np.mod(np.rint(flank.parameter * lobes / (2.0 * np.pi)).astype(int), lobes)
-    roots = [flank.largest(nearest == root) for root in range(lobes)]
-    values, places = (np.stack(found, axis=1) for found in zip(*(wall.largest() for wall in round_walls), strict=True))
-    cranks = model.geometry.placement.cranks
-    worst = np.argmax(np.nan_to_num(values[:, :cranks], nan=-np.inf), axis=1)[:, None]
-    under = []
+    walls = np.stack([wall.largest() for wall in round_walls], axis=1)
+    cranks, rows, under = model.geometry.placement.cranks, np.arange(stress.shape[0])[:, None, None], []
     for wall, own in zip(coefficients.walls, placed, strict=True):
         stations, weights = wall.weights(own.parameter)
-        rows = np.arange(stress.shape[0])[:, None, None]
         under.append(np.sum(stress[rows, stations] * weights, axis=-1))
     return WallStresses(
-        root=np.stack([value for value, _ in roots], axis=1),
-        root_parameter=np.stack([parameter for _, parameter in roots], axis=1),
-        bore=np.take_along_axis(values, worst, axis=1)[:, 0],
-        bore_parameter=np.take_along_axis(places, worst, axis=1)[:, 0],
-        hole=values[:, cranks:],
-        hole_parameter=places[:, cranks:],
+        root=np.stack([flank.largest(nearest == root) for root in range(lobes)], axis=1),
+        bore=np.fmax.reduce(walls[:, :cranks], axis=1),
+        hole=walls[:, cranks:],
         pin_contact=under[0],
         roller_contact=np.concatenate(under[1 : 1 + cranks], axis=1),
         hole_contact=np.concatenate([np.zeros((len(stress), 0)), *under[1 + cranks :]], axis=1),
-    )
-
-
-def _unknown(response: DiscResponse, lobes: int) -> WallStresses:
-    pins, rollers, holes = (
-        np.full(load.shape, np.nan) for load in (response.pin_load, response.rollers.outer_load, response.hole_load)
-    )
-    roots = np.full((len(response.pin_load), lobes), np.nan)
-    return WallStresses(
-        root=roots,
-        root_parameter=roots,
-        bore=roots[:, 0],
-        bore_parameter=roots[:, 0],
-        hole=holes,
-        hole_parameter=holes,
-        pin_contact=pins,
-        roller_contact=rollers,
-        hole_contact=holes,
     )

@@ -22,7 +22,6 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.compliance.response import Start
-from ltca.compliance.stored_energy import StoredEnergy
 from ltca.dynamics.kinetics import Motion
 from ltca.dynamics.teeth import Teeth, TeethForces
 from ltca.equilibrium.friction.slip import Slip
@@ -30,7 +29,7 @@ from ltca.equilibrium.friction.turning import TurningFriction
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_PLACE, X, Y
 from ltca.mechanics.contacts import ContactSystem, Linearised
-from ltca.mechanics.energy import stored_by_disc, stored_by_pins
+from ltca.mechanics.energy import StoredEnergy, stored_by_disc, stored_by_pins
 
 FADING = 1e-2
 """Slip by the speed of the eccentric at which friction has 0.7 of its size."""

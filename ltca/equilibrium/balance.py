@@ -76,7 +76,7 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
         found,
         wheel_moment=part.force[:, WHEEL_ANGLE],
         pose=found.pose[:, model.coordinates.columns(disc)],
-        response=Response.of_disc(part),
+        response=Response(force=part.force, parts=(part,)),
     )
 
 

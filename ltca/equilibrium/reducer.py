@@ -9,9 +9,8 @@ Pairs are numbered disc after disc: of n discs array axes for pairs are n times 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +36,7 @@ from ltca.compliance.response import (
     Start,
     bearing_moments,
     bearing_pushes,
+    beside,
 )
 from ltca.drive.parts import Drive
 from ltca.equilibrium.external_force import ExternalForce
@@ -52,8 +52,6 @@ from ltca.mechanics.full_tangent import with_whole_tangent
 
 POSITIONS_AT_ONCE = 512
 """Positions whose contacts are found at once: few enough for the processor's cache."""
-OF_DISCS = ("flank", "holes", "rollers", "pin_load", "hole_load")
-"""Contacts that a response has disc after disc."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -359,8 +357,7 @@ class Reducer:
     def pressures(self, response: Response) -> ContactPressures:
         """Return the pressures of all discs behind a response of this model."""
         each = zip(self.discs, response.parts, strict=True)
-        found: ContactPressures = _beside([disc.pressures(part) for disc, part in each])
-        return found
+        return beside([disc.pressures(part) for disc, part in each])
 
 
 class _Evaluated:
@@ -453,10 +450,8 @@ class Evaluation:
         return Response(
             force=self.force,
             tangent=self.tangent,
-            **{name: _beside([getattr(part, name) for part in parts]) for name in OF_DISCS},
             parts=parts,
             shifts=None if shifts is None else shifts[:, : len(parts)],
-            ring=parts[0].ring,
             left=self.left,
             inner=start.inner,
             contact_stiffness=self.contact_stiffness,
@@ -485,15 +480,3 @@ def bearing_forces(model: Reducer, crank_angle: FloatArray, response: Response) 
 def disc_torques(response: Response) -> FloatArray:
     """Return the part of the external moment on the wheel that each disc carries, shape (positions, discs), N·mm."""
     return np.stack([part.force[:, WHEEL_ANGLE] for part in response.parts], axis=1)
-
-
-def _beside(values: Sequence[Any]) -> Any:
-    """Put arrays (positions, pairs, …), or dataclasses of them, of the discs side by side; else the first."""
-    if len(values) == 1:
-        return values[0]
-    if isinstance(values[0], np.ndarray):
-        return np.concatenate(values, axis=1)
-    if not is_dataclass(values[0]):
-        return values[0]
-    kind: Any = type(values[0])  # FlankMotion, PairMotion, RollerState, …
-    return kind(**{item.name: _beside([getattr(value, item.name) for value in values]) for item in fields(kind)})

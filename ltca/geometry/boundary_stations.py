@@ -90,16 +90,21 @@ def uniform_parameter(parameter: FloatArray, teeth: int, clustering: float) -> F
     return parameter + beyond / teeth
 
 
-def weights_of(boundaries: Sequence[Boundary], parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+def weights_of(
+    boundaries: Sequence[Boundary], number: NDArray[np.integer], parameter: FloatArray
+) -> tuple[NDArray[np.intp], FloatArray]:
     """Return stations and weights of places on several boundaries, shapes (…, places, 6).
 
-    `boundaries` has the boundary of each place, `parameter` the parameters, shape (…, places), rad.
+    `number` has the number of the boundary of each place, `parameter` the parameters, rad, both of the shape (…, places).
     """
-    first, count = (np.array([getattr(own, name) for own in boundaries]) for name in ("first", "count"))
-    uniform = parameter - np.array([own.offset for own in boundaries])
-    for boundary in {own for own in boundaries if own.clustering}:
-        there = [place for place, own in enumerate(boundaries) if own == boundary]
-        uniform[..., there] = boundary.uniform(parameter[..., there])
+    first, count, offset = (
+        np.array([getattr(own, name) for own in boundaries])[number] for name in ("first", "count", "offset")
+    )
+    uniform = parameter - offset
+    for own, boundary in enumerate(boundaries):
+        if boundary.clustering:
+            there = number == own
+            uniform[there] = boundary.uniform(parameter[there])
     return _lagrange(uniform, first, count)
 
 

@@ -22,7 +22,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     flank, in_holes = each.flank, each.holes
     rollers = _rollers(at, disc)
     if system.coupled and system.components == 1:
-        body: Any = system.model.discs[disc]
+        body = system.model.discs[disc].bodies[0]
         approach = _approaches(at, disc)
         flank = replace(flank, approach=approach[:, : system.pins])
         in_holes = replace(in_holes, approach=approach[:, system.pins + system.rollers :])
@@ -58,7 +58,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     if each.tilts is not None:
         found = at.slices_after(disc)
         leaning = tuple(
-            LeaningPairs(tilt=tilt, contact=contact)
+            LeaningPairs(tilt=tilt, contact=contact.kept)
             for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
         )
     return DiscResponse(

@@ -37,6 +37,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, take_positions
 from ltca.compliance import sliced
+from ltca.compliance.coefficients import BodyPlaces
 from ltca.compliance.coupled import BodyFlexibility
 from ltca.compliance.response import ContactLaws, Inner, Start
 from ltca.errors import ConvergenceError
@@ -690,14 +691,17 @@ class Linearised:
             each += [None if at.leans is None else at.leans * self.half for at in self.discs]
         return np.stack([one for one in each if one is not None], axis=1)
 
-    def body_places(self, disc: int) -> tuple[FloatArray, FloatArray, FloatArray, ComplexArray, float]:
-        """Where the contacts of a disc lie on its body: θ on the flank, polar angles in bores and holes, places of the first."""
+    def body_places(self, disc: int) -> BodyPlaces:
+        """Where the contacts of a disc lie on its body."""
         at = self.discs[disc]
+        place = at.geometry.placement
         turn, holes = at.pose[:, DISC_ROTATION, None], at.holes.gradient
         in_bore = np.angle(at.rays.outermost * at.rays.direction - at.displacement) - turn
         in_hole = np.angle(-(holes[..., X] + 1j * holes[..., Y])) - turn
         on_flank = at.geometry.profile.flank(at.flank.parameter)
-        return at.flank.parameter, in_bore, in_hole, on_flank, float(at.geometry.placement.bore_radius)
+        return BodyPlaces.on_walls(
+            at.flank.parameter, on_flank, in_bore, float(place.bore_radius), in_hole, place.cranks
+        )
 
     @property
     def _thick(self) -> FloatArray:
@@ -888,12 +892,9 @@ class Linearised:
         """What the bodies take of the approaches on pins, bores and holes, and of their tilts, by disc and component."""
         found: list[list[FloatArray]] = []
         for disc, bodies in enumerate(self.bodies):
-            some, kinds = self.chosen[disc], self.system.of_kind[disc]
-            found.append([])
-            for component, body in enumerate(bodies):
-                load = self.corrected_load[:, component]
-                loaded = np.concatenate([self.picked(load[:, kinds[kind]], some[kind]) for kind in range(3)], axis=1)
-                found[disc].append(body.taken(loaded))
+            pins, _, holes, _ = self.system.of_kind[disc]
+            walls = self.corrected_load[:, :, pins.start : holes.stop]
+            found.append([body.taken(walls[:, component]) for component, body in enumerate(bodies)])
         return found
 
     @cached_property

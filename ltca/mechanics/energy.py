@@ -1,17 +1,63 @@
-"""What contacts of the one system store, with the bodies and pins behind them (`ltca.compliance.stored_energy`)."""
+r"""Energy that contacts store at a pose, with the bodies and pins behind them, and the work that goes with its change beside that
+of their forces.
+
+With the near-field approaches ε of all contacts, their loads F and the coefficients C of the bodies between them,
+
+.. math:: U = \sum_i \int_0^{\epsilon_i} F\,d\epsilon + \tfrac12 F^T C F, \qquad \delta = \epsilon + C F .
+
+Contacts move over the bodies: to other radii of curvature ρ, and to other places, between which C differs. Forces act along the
+normals alone, so that along a motion
+
+.. math:: dU = F^T d\delta + \sum_i \frac{\partial U_i}{\partial\varrho_i} d\varrho_i - \tfrac12 F^T\,dC\,F ,
+
+the derivative by ρ being that of the law at a held ε. Contacts that do not feel each other have no C. Of contacts in slices ε are
+approaches and tilts, F loads and moments, and a law stores what its slices do together.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.compliance.stored_energy import Pressed, StoredEnergy
 
 if TYPE_CHECKING:
     from ltca.mechanics.contacts import Linearised
+
+RADIUS_STEP = 1e-4
+"""Relative step of an effective radius for the derivative of an energy."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredEnergy:
+    """Energy of the contacts of a disc.
+
+    Attributes
+    ----------
+    energy : array, shape (positions,)
+        U, N·mm.
+    radius, by_radius : array, shape (positions, z_P)
+        ρ of wheel pins and flank, mm, and ∂U/∂ρ, N.
+    load : array, shape (positions, contacts)
+        F, N.
+    coefficients : array, shape (positions, contacts, contacts)
+        C, mm/N; of no contact where they do not feel each other.
+    """
+
+    energy: FloatArray
+    radius: FloatArray
+    by_radius: FloatArray
+    load: FloatArray
+    coefficients: FloatArray
+
+    def work_to(self, other: StoredEnergy) -> tuple[FloatArray, FloatArray]:
+        """Return ∫∂U/∂ρ dρ and −½∫Fᵀ dC F on the way to other poses nearby, by trapezoids, N·mm, shape (positions,)."""
+        curvature = 0.5 * ((self.by_radius + other.by_radius) * (other.radius - self.radius)).sum(axis=-1)
+        change = other.coefficients - self.coefficients
+        squares = [np.einsum("bi,bij,bj->b", each.load, change, each.load) for each in (self, other)]
+        return np.asarray(curvature), -0.25 * (squares[0] + squares[1])
 
 
 def stored_by_disc(at: Linearised) -> tuple[StoredEnergy, ...]:
@@ -31,37 +77,42 @@ def stored_by_pins(at: Linearised) -> FloatArray:
 def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     """Energy of the laws at the deformations of their contacts, and that of the bodies, ½ FᵀCF."""
     system, kinds = at.system, at.system.of_kind[disc]
-    laws = system.laws[disc]
-    radii = at.discs[disc].flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
-    deformation = [at.after[:, 0, kind] for kind in kinds]
-    tilts: list[Any] = [None] * len(kinds)
-    near: list[Any] = [None] * len(kinds)
-    if system.components > 1:
-        tilts = [at.after[:, 1, kind] / at.half for kind in kinds]
-        near = [one.near for one in at.slices_after(disc)]
-    pins, *others = map(Pressed, laws.laws, deformation, radii, tilts, near)
-    found = StoredEnergy.of_laws(pins, others)
-    bodies = system.model.discs[disc]
-    if bodies.coefficients is None:
-        return found
-    rows = at.pose.shape[0]
-    every = [np.tile(np.arange(kind.stop - kind.start), (rows, 1)) for kind in kinds[:3]]
-    energy, loads, matrices = found.energy, [], []
-    for component, body in enumerate(bodies.body_flexibility(at.body_places(disc), every)[: system.components]):
-        load, matrix = at.corrected_load[:, component], body.among
-        on_walls = np.concatenate([load[:, kind] for kind in kinds[:3]], axis=1)
-        in_bores, on_races = load[:, kinds[1]], load[:, kinds[3]]
-        energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_walls, matrix, on_walls)
-        energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_races, body.on_race, on_races)
-        energy = energy + body.across_roller * (in_bores * on_races).sum(axis=1)
-        loads.append(on_walls)
-        matrices.append(matrix)
+    laws, rows = system.laws[disc], at.pose.shape[0]
+    pin_radius = at.discs[disc].flank.effective_radius
+    radii = pin_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
+
+    def of_kind(number: int, radius: FloatArray) -> FloatArray:
+        law, approach = laws.laws[number], at.after[:, 0, kinds[number]]
+        if system.components == 1:
+            return np.asarray(law.energy(approach, radius))
+        curved, near = np.broadcast_to(radius, approach.shape), at.slices_after(disc)[number].near
+        return np.asarray(
+            law.energy(law.respond(approach, at.after[:, 1, kinds[number]] / at.half, curved, near), curved)
+        )
+
+    energy = sum((of_kind(number, radius).sum(axis=-1) for number, radius in enumerate(radii)), np.zeros(rows))
+    low, high = (of_kind(0, pin_radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))
+    bodies, loads, matrices = system.model.discs[disc], [np.zeros((rows, 0))], []
+    if bodies.coefficients is not None:
+        every = [np.tile(np.arange(kind.stop - kind.start), (rows, 1)) for kind in kinds[:3]]
+        for component, body in enumerate(bodies.body_flexibility(at.body_places(disc), every)[: system.components]):
+            load, matrix = at.corrected_load[:, component], body.among
+            on_walls, in_bores, on_races = load[:, kinds[0].start : kinds[2].stop], load[:, kinds[1]], load[:, kinds[3]]
+            energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_walls, matrix, on_walls)
+            energy = energy + 0.5 * np.einsum("bi,bij,bj->b", on_races, body.on_race, on_races)
+            energy = energy + body.across_roller * (in_bores * on_races).sum(axis=1)
+            loads.append(on_walls)
+            matrices.append(matrix)
     # Races and what rollers yield between their contacts are alike everywhere: they do no work as contacts move.
-    count = loads[0].shape[1]
-    whole = np.zeros((rows, len(loads), count, len(loads), count))
-    for component, matrix in enumerate(matrices):
-        whole[:, component, :, component] = matrix
-    size = len(loads) * count
-    return replace(
-        found, energy=energy, load=np.concatenate(loads, axis=1), coefficients=whole.reshape(rows, size, size)
+    load = np.concatenate(loads, axis=1)
+    coefficients, first = np.zeros((rows, load.shape[1], load.shape[1])), 0
+    for matrix in matrices:
+        own = slice(first, first + matrix.shape[1])
+        coefficients[:, own, own], first = matrix, own.stop
+    return StoredEnergy(
+        energy=energy,
+        radius=pin_radius,
+        by_radius=(high - low) / (2.0 * RADIUS_STEP * pin_radius),
+        load=load,
+        coefficients=coefficients,
     )

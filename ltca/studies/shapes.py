@@ -27,8 +27,7 @@ from ltca.compliance.coefficient_files import (
     told_seconds,
 )
 from ltca.compliance.coefficients import InfluenceCoefficients
-from ltca.compliance.near_field import NEAR_FIELDS
-from ltca.compliance.ring import derive_beforehand, expected_ring_seconds, has_ring
+from ltca.compliance.ring import expected_ring_seconds, has_ring, known_ring
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Bodies, Drive
 from ltca.drive.ring_shape import has_ring_of_elements, ring_fingerprint
@@ -127,7 +126,7 @@ def find_rings_beforehand(rings: Mapping[str, Drive], told: Callable[[str], None
     failures = []
     for drive in missing:
         try:
-            derive_beforehand(drive)
+            known_ring(drive)
         except CycloError as error:
             failures.append(error)
     if len(failures) == len(rings):
@@ -159,8 +158,7 @@ def find_beforehand(engine: Engine, shapes: Mapping[str, Drive], told: Callable[
             }
             # Several at once; what fails is tried again alone below.
             with suppress(CycloError):
-                near_field = NEAR_FIELDS[engine.compliance]
-                find_case_coefficients(group, near_field=near_field, bodies=engine.bodies)
+                find_case_coefficients(group, engine=engine.compliance, bodies=engine.bodies)
         wanted = missing or wanted[:1]
     failures, found = [], list[InfluenceCoefficients]()
     for drive in wanted:

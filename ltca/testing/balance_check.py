@@ -411,8 +411,8 @@ def potential_of(drive: Drive, model: Reducer, balanced: Equilibrium, position: 
     return PotentialEnergy(
         drive=drive,
         pin_law=contact_alone(laws.pin_law),
-        inner_law=laws.roller_laws.inner,
-        outer_law=laws.roller_laws.outer,
+        inner_law=laws.inner_law,
+        outer_law=laws.outer_law,
         crank_angle=float(balanced.crank_angle[position]),
         wheel_moment=float(balanced.wheel_moment[position]),
         wheel_pins=pins["wheel_pins"],

@@ -16,9 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ltca.arrays import ComplexArray, FloatArray
+from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.contact.round_bodies import held_ring_approach
 from ltca.drive.parts import Drive, Material
 from ltca.drive.single_discs import nominal_shape
+from ltca.geometry.boundary_stations import LAGRANGE_POINTS, Boundary
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.coefficient_schema import elastic_constants
@@ -197,3 +199,26 @@ def cylinder_approach(
     """
     q, b, r = (np.asarray(value, dtype=float) for value in (line_load, half_width, radius))
     return np.asarray(q * (1.0 - poisson_ratio**2) / (np.pi * young_modulus) * (2.0 * np.log(4.0 * r / b) - 1.0))
+
+
+def without_coupling(drive: Drive) -> InfluenceCoefficients:
+    """Return coefficients that add nothing to the half-space: C = 0, the paper's model."""
+    cranks, holes = drive.crank.number, drive.number_of_holes
+    flank, *walls = [Boundary(first=k * LAGRANGE_POINTS, count=LAGRANGE_POINTS) for k in range(1 + cranks + holes)]
+    return InfluenceCoefficients(
+        fingerprint=drive.shape_fingerprint(),
+        shared=False,
+        plane="none",
+        thickness=drive.disc.thickness,
+        flank=flank,
+        bores=tuple(walls[:cranks]),
+        holes=tuple(walls[cranks:]),
+        disc=np.zeros(((1 + cranks + holes) * LAGRANGE_POINTS,) * 2),
+        pin=0.0,
+        roller=np.zeros((2, 2)),
+        race=np.zeros(LAGRANGE_POINTS),
+        disc_logarithm=0.0,
+        pin_logarithm=0.0,
+        roller_logarithm=0.0,
+        race_logarithm=0.0,
+    )

@@ -541,7 +541,7 @@ class WidthCheck:
 
     def _free_ends(self, number: int, kind: str) -> tuple[FreeEnds, ...]:
         """Of the bodies of a kind of contacts of a disc; half-spaces where the model knows no ends."""
-        near: Any = getattr(self.model.discs[number], "near_field", None)
+        near: Any = getattr(self.model.discs[number], "contacts", None)
         return () if near is None else getattr(near.kinds, kind).free_ends
 
     def _members(self, told: Any, torque: float | None) -> None:

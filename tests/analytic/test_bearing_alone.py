@@ -19,14 +19,13 @@ from scipy.optimize import brentq
 
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.laws.line_contact import LineContactLaw
-from ltca.testing.bearing_alone import bearing_alone
+from ltca.testing.bearing_alone import bearing_alone, roller_laws
 
 
 def balanced(model, crank, displacement):
-    laws = model.roller_laws
+    laws = roller_laws(model)
     rays = model.geometry.rollers(np.array([crank]))
-    radii = laws.outer_radius, laws.inner_radius
-    return bearing_alone(rays, np.array([displacement]), (laws.outer, laws.inner), radii).parts[0].rollers
+    return bearing_alone(rays, np.array([displacement]), laws).parts[0].rollers
 
 
 def bearing_force(state):

@@ -10,11 +10,12 @@ from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
+from ltca.testing.bearing_alone import roller_laws
 
 
 def stored_energy(model, response):
     """ΣU of all contacts, N·mm."""
-    laws = model.roller_laws
+    laws = roller_laws(model)
     total = model.pin_law.energy(response.flank.approach, response.flank.effective_radius).sum(axis=1)
     total = total + model.hole_law.energy(response.holes.approach, 1.0).sum(axis=1)
     total = total + laws.inner.energy(response.rollers.inner_approach, laws.inner_radius).sum(axis=1)

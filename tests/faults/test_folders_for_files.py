@@ -53,7 +53,7 @@ def test_a_folder_at_the_place_of_a_kept_ring(cache):
     place = coefficient_files.kept_file(ring.file_name(drive))
     place.mkdir(parents=True)
     with pytest.raises(PlaceError, match="is a folder in the place of a file"):
-        ring.derive_beforehand(drive)
+        ring.known_ring(drive)
 
 
 @pytest.mark.parametrize(

@@ -15,11 +15,11 @@ import xarray as xr
 import ltca
 from ltca.analysis.engines import engine_named
 from ltca.analysis.results import build_dataset
-from ltca.compliance.coefficients import without_coupling
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
+from ltca.testing.closed_form_bodies import without_coupling
 
 DRIVE = load_drive("paper").cases["CS-3"]
 ANGLES = [0.1, 2.3]

@@ -12,6 +12,7 @@ from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.testing.bearing_alone import roller_laws
 
 
 @pytest.fixture
@@ -24,7 +25,7 @@ def stored_energy(model, response, pose, angle=0.0):
     """ΣU of contacts and supports, N·mm, and ∂U/∂ρ of every wheel pin, N, by differences of the law alone."""
     total, slopes = np.zeros(pose.shape[0]), []
     for disc, part in zip(model.discs, response.parts, strict=True):
-        laws, flank = disc.roller_laws, part.flank
+        laws, flank = roller_laws(disc), part.flank
         total = total + disc.pin_law.energy(flank.approach, flank.effective_radius).sum(axis=1)
         total = total + disc.hole_law.energy(part.holes.approach, disc.geometry.placement.hole_effective_radii).sum(
             axis=1

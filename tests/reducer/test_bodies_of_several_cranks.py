@@ -10,9 +10,9 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import load_coefficients, without_coupling
+from ltca.compliance.coefficients import BodyPlaces, load_coefficients
 from ltca.compliance.response import bearing_pushes
-from ltca.compliance.stress_coefficients import StressCoefficients, WallContacts, evaluate_wall_stress
+from ltca.compliance.stress_coefficients import StressCoefficients, evaluate_wall_stress
 from ltca.compliance.wall_stress import wall_profiles
 from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import single_discs
@@ -25,7 +25,7 @@ from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
-from ltca.testing.closed_form_bodies import closed_form_coefficients
+from ltca.testing.closed_form_bodies import closed_form_coefficients, without_coupling
 
 pytestmark = pytest.mark.slow
 
@@ -128,9 +128,10 @@ def test_contacts_feel_those_in_their_own_bore_and_on_their_own_race(small, clos
     coefficients = closed_forms(small)[0]
     rng, place = np.random.default_rng(7), Placement.of_drive(single)
     bore, theta = rng.uniform(0.0, 6.28, (2, 30)), rng.uniform(0.0, 6.28, (2, 14))
-    few = [np.array([[3], [5]]), np.array([[0, 12, 29], [4, 9, 21]]), np.zeros((2, 0), dtype=int)]
-    arguments = (theta, bore, np.zeros((2, 0)), FlankProfile.of_drive(single).flank(theta), float(place.bore_radius))
-    matrix, chosen = coefficients.disc_matrix(*arguments), coefficients.disc_matrix(*arguments, few)
+    on_flank = FlankProfile.of_drive(single).flank(theta)
+    places = BodyPlaces.on_walls(theta, on_flank, bore, float(place.bore_radius), np.zeros((2, 0)), 3)
+    few = np.array([[3, 14, 26, 43], [5, 18, 23, 35]])
+    matrix, chosen = coefficients.disc_matrix(places), coefficients.disc_matrix(places.take(few))
     crank = np.repeat(np.arange(3), 10)
     points = place.bore_radius * np.exp(1j * bore)
     apart = np.abs(points[:, :, None] - points[:, None, :])
@@ -142,9 +143,11 @@ def test_contacts_feel_those_in_their_own_bore_and_on_their_own_race(small, clos
     assert own < 1e-9
     np.testing.assert_allclose(matrix[:, 14:, 14:][:, crank[:, None] != crank], 0.0, atol=1e-12 * unit)
     np.testing.assert_allclose(matrix[:, 14:, :14], 0.0, atol=1e-12 * unit)
-    for row in range(2):
-        columns = np.concatenate((few[0][row], 14 + few[1][row]))
-        np.testing.assert_allclose(chosen[row], matrix[row][:, columns], rtol=0.0, atol=1e-12 * unit)
+    for row, some in enumerate(few):
+        np.testing.assert_allclose(chosen[row], matrix[row][some[:, None], some], rtol=0.0, atol=1e-12 * unit)
+    load = rng.uniform(0.0, 1e3, (2, 44))
+    together = np.matmul(matrix, load[..., None])[..., 0]
+    np.testing.assert_allclose(coefficients.disc_approach(places, load), together, rtol=0.0, atol=1e-9 * unit)
     race = coefficients.race_matrix(place.roller_cage_angles, 4.5)
     assert np.all(race[crank[:, None] != crank] == 0.0)
     blocks = [race[10 * c : 10 * c + 10, 10 * c : 10 * c + 10] for c in range(3)]
@@ -195,7 +198,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
         ],
         axis=1,
     )
-    matrix = found.disc_matrix(theta, bore, hole, turned, float(disc.bore_radius))[0]
+    matrix = found.disc_matrix(BodyPlaces.on_walls(theta, turned, bore, float(disc.bore_radius), hole, 3))[0]
 
     def at_metal(places):
         return field(places * np.exp(-2j * np.pi * drive.part_turn[1] / drive.pattern))
@@ -205,9 +208,7 @@ def test_coefficients_of_the_part_are_found_where_it_stands(small, phase, holes)
     np.testing.assert_allclose(matrix, np.outer(metal, metal), rtol=1e-5)
     # stresses likewise, by a newton on every contact
     walls = [theta, *np.split(bore, 3, axis=1), *np.split(hole, max(1, holes), axis=1)][: len(stations)]
-    stress = evaluate_wall_stress(
-        found.stress, tuple(WallContacts(parameter=own, load=np.ones_like(own)) for own in walls)
-    )
+    stress = evaluate_wall_stress(found.stress, [(own, np.ones_like(own)) for own in walls])
     for centre, radius, wall in zip(
         np.concatenate((disc.bore_centres, disc.hole_centres)), radii, found.stress.walls[1:], strict=True
     ):

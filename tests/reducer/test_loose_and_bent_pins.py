@@ -13,7 +13,6 @@ from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset
 from ltca.analysis.summary import summarise
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.pin_flexibility import PinDisplacements
 from ltca.drive.parts import CrankSupport, ShaftPinBeam, ShaftPinSeat, WheelPinBeam, WheelPinSeat
@@ -33,6 +32,7 @@ from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
 from ltca.reading.writing import drive_text
 from ltca.studies.batch_analysis import BatchSettings, analyse_samples
+from ltca.testing.closed_form_bodies import without_coupling
 
 pytestmark = pytest.mark.slow
 

@@ -86,9 +86,8 @@ def with_linear_bearings(model, stiffness):
     for disc in model.discs:
         place = disc.geometry.placement
         radii = {"inner_race_radius": CIRCLE, "bore_radius": CIRCLE + 2.0 * float(place.roller_radii[0]) - PRELOAD}
-        laws = replace(disc.roller_laws, inner=law, outer=law)
         geometry = replace(disc.geometry, placement=replace(place, **radii))
-        discs.append(replace(disc, geometry=geometry, roller_laws=laws))
+        discs.append(replace(disc, geometry=geometry, inner_law=law, outer_law=law))
     return replace(model, discs=tuple(discs))
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import without_coupling
+from ltca.compliance.coefficients import BodyPlaces
 from ltca.drive.parts import part_turn
 from ltca.drive.single_discs import equal_parts, nominal_shape, single_discs
 from ltca.geometry.boundary_stations import Boundary
@@ -15,6 +15,7 @@ from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import without_coupling
 
 
 @pytest.mark.parametrize(("teeth", "holes"), [(13, 8), (14, 8), (15, 6), (39, 8), (3, 3), (59, 10), (12, 6)])
@@ -86,7 +87,9 @@ def test_coefficients_of_the_part_are_found_where_it_stands(phase):
         ],
         axis=1,
     )
-    matrix = found.disc_matrix(theta, bore, holes, turned.flank(theta), float(disc.bore_radius))[0]
+    matrix = found.disc_matrix(
+        BodyPlaces.on_walls(theta, turned.flank(theta), bore, float(disc.bore_radius), holes, 1)
+    )[0]
     # the metal of the part that is at these places of the disc: turned back by whole hole pitches
     metal = field(points[0] * np.exp(-2j * np.pi * drive.part_turn[1] / 8.0))
     # interpolation between stations: to round-off on circles, 1e-6 on the lobes

@@ -11,9 +11,9 @@ import pytest
 import validation.levels.flexible_disc
 from fem.options import SolutionOptions
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import without_coupling
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare.compared_positions import compare_case
 from validation.compare.disc_stresses import DiscStressAnswer
 from validation.compare.finite_element_positions import FullPosition

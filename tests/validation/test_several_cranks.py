@@ -13,7 +13,6 @@ from fem.drive.disc_stress import DiscStress
 from fem.options import SolutionOptions
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.stress_coefficients import StressCoefficients
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
@@ -21,6 +20,7 @@ from ltca.geometry.boundary_stations import Boundary
 from ltca.page.scene import drive_scene
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare.compared_positions import _AnsweredDisc, _station_distances
 from validation.compare.comparison import KINDS, KindAnswer, PositionAnswer, compare_positions
 from validation.compare.disc_stresses import (
@@ -146,8 +146,9 @@ def test_stations_of_a_part_that_stands_turned_are_turned(paper_cases):
     assert single.part_turn[1:] != (0, 0)
     analysis = analyse(two, np.array([ANGLE])).discs[1]
     place = coefficients.placed_in(single).flank.parameters()
-    on_stations = replace(analysis.full.response.flank, parameter=place[None])
-    response = replace(analysis.full.response, flank=on_stations)
+    (part,) = analysis.full.response.parts
+    part = replace(part, flank=replace(part.flank, parameter=place[None]))
+    response = replace(analysis.full.response, parts=(part,))
     there = replace(analysis, full=replace(analysis.full, response=response))
     found = _AnsweredDisc.of_analyses({"fe": there}, coefficients)
     np.testing.assert_allclose(found.distances["pin"], 0.0, atol=1e-12)

@@ -10,10 +10,10 @@ import pytest
 import validation.compare.derived_coefficients as derived
 from fem.options import SolutionOptions
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import without_coupling
 from ltca.drive.deviations import DiscClearance, OneDisc, Runout
 from ltca.drive.single_discs import single_discs
 from ltca.reading.changes import with_fields
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare.compared_positions import compare_case
 from validation.compare.finite_element_positions import FullPosition, answer_of_summary, disc_case
 from validation.compare.model_positions import answers_of

@@ -143,8 +143,8 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     if len(analysis.model.discs) > 1 or coefficients is None or coefficients.stress is None:
         return []
     rotation = full.pose[:, 2]
-    profiles = wall_profiles(model, full.response, analysis.pressures, rotation, refinement=1)
-    found = wall_stresses(model, full.response, analysis.pressures, rotation)
+    profiles = wall_profiles(model, full.response.parts[0], analysis.pressures, rotation, refinement=1)
+    found = wall_stresses(model, full.response.parts[0], analysis.pressures, rotation)
     contact: dict[Kind, FloatArray] = {
         "pin": found.pin_contact,
         "roller_outer": found.roller_contact,
@@ -152,8 +152,8 @@ def stresses_of(analysis: LoadedAnalysis) -> list[DiscStressAnswer]:
     }
     bores, cranks = found.bore[:, None], model.geometry.placement.cranks
     if cranks > 1:  # the largest of all bores would hide the others
-        walls = wall_profiles(model, full.response, analysis.pressures, rotation)[1 : 1 + cranks]
-        bores = np.stack([wall.largest()[0] for wall in walls], axis=1)
+        walls = wall_profiles(model, full.response.parts[0], analysis.pressures, rotation)[1 : 1 + cranks]
+        bores = np.stack([wall.largest() for wall in walls], axis=1)
     return [
         DiscStressAnswer(
             parameter=tuple(wall.parameter for wall in profiles),

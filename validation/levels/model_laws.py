@@ -10,11 +10,12 @@ import numpy as np
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.arrays import FloatArray
-from ltca.compliance.coefficients import InfluenceCoefficients, without_coupling
+from ltca.compliance.coefficients import BodyPlaces, InfluenceCoefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.near_field import NearField
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCSEC
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare.comparison import compare_positions
 from validation.compare.model_positions import answers_of
 from validation.rows import Row, positive_row
@@ -111,17 +112,17 @@ def pair_approaches(
     angle = np.array([crank_angle])
     flank = model.geometry.flank(angle, np.zeros((1, 4)))
     place = model.geometry.placement
-    rollers, holes = place.outer_effective_radii.size, place.hole_effective_radii.size
-    matrix = coefficients.disc_matrix(
+    nothing = np.zeros((1, 0))
+    places = BodyPlaces.on_walls(
         flank.parameter,
-        np.linspace(0.0, 2.0 * np.pi, rollers, endpoint=False)[None, :],
-        np.zeros((1, holes)),
         model.geometry.profile.flank(flank.parameter),
+        nothing,
         drive.bore_radius,
+        nothing,
+        place.cranks,
     )
-    pins = flank.parameter.shape[1]
-    body = np.einsum("bii->bi", matrix)[0, :pins] + model.own.pin
-    near, _ = model.near_field.pin.approach_at_load(load, flank.effective_radius[0])
+    body = np.diag(coefficients.disc_matrix(places)[0]) + model.bodies[0].alone[0]
+    near, _ = model.contacts.pin_law.approach_at_load(load, flank.effective_radius[0])
     return np.asarray(near + body * load)
 
 

@@ -16,7 +16,7 @@ from ltca.geometry.length_profile import LOGARITHMIC, Relief
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import ContactLaw
 from ltca.reading.drive_file import load_drive
-from ltca.testing.bearing_alone import bearing_alone
+from ltca.testing.bearing_alone import RollerLaws, bearing_alone
 from validation.manual.case import Case, Figure, Reference, absolute_figure, relative_figure
 
 ROUND_OFF = "round-off"
@@ -61,8 +61,8 @@ def load_zone(epsilon: float, rollers: int) -> tuple[float, float, float]:
         bore_play=np.full(rollers, 24.5 + play),
     )
     radius = np.ones(rollers)
-    laws = PowerLaw(factor=stiff[1]), PowerLaw(factor=stiff[0])
-    state = bearing_alone(rays, np.array([-deflection + 0j]), laws, (radius, radius)).parts[0].rollers
+    inner, outer = (PowerLaw(factor=factor) for factor in stiff)
+    state = bearing_alone(rays, np.array([-deflection + 0j]), RollerLaws(inner, outer, radius, radius)).parts[0].rollers
     force = float((state.outer_load * state.outer_direction).sum().real)
     largest = float(sum(k ** (-1.0 / n) for k in stiff) ** -n * (deflection - play) ** n)
     return force / (rollers * largest), largest * rollers / force, float(state.outer_load.max()) / largest

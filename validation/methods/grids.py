@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike
 
 from ltca.arrays import FloatArray
 from ltca.compliance.half_space import HalfSpaceCompliance
-from ltca.compliance.pressures import along_width, elastic_hole_pressures, pressures_in_slices
+from ltca.compliance.pressures import along_width, pressures_in_slices, pressures_of_law
 from ltca.compliance.response import ContactLaws, ContactPressures, DiscResponse, KindPressures
 from ltca.contact.contact_kind import CELLS, ContactKind, ContactKinds, Separation
 from ltca.contact.end_pressure import largest_pressure
@@ -31,6 +31,7 @@ from ltca.geometry.pair_motion import FlankMotion
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.separation import circle_departure, flank_departure
 from ltca.laws.contact_law import ContactLaw
+from ltca.laws.line_contact import LineContactLaw
 from ltca.laws.sliced_contact import Exactness, SlicedContact, slice_heights, slice_means
 from ltca.laws.spring import SpringLaw
 from ltca.laws.width_pressure import PatchAlongWidth
@@ -287,7 +288,6 @@ class GridCompliance:
     """
 
     coefficients: ClassVar[None] = None
-    grids_can_check: ClassVar[bool] = False
 
     geometry: ContactGeometry
     kinds: ContactKinds
@@ -357,7 +357,7 @@ class GridCompliance:
                 pins=pins.pressures(flank.approach, flank.effective_radius),
                 outer=outer.pressures(rollers.outer_approach, laws.outer_radius),
                 inner=inner.pressures(rollers.inner_approach, laws.inner_radius),
-                holes=elastic_hole_pressures(kinds.holes, response.hole_load, place),
+                holes=_hole_pressures(kinds.holes, response.hole_load, place.hole_effective_radii),
                 rigid_shaft_pins=False,
             )
         by_lines = pressures_in_slices(response, kinds, place, shaft_pins_on_springs=True)
@@ -379,6 +379,12 @@ class GridCompliance:
         if profile.deviation is not None:
             waves = max(waves, profile.deviation.knots.size, *profile.deviation.orders)
         return float(2.0 * np.pi / (STATIONS_PER_WAVE * waves))
+
+
+def _hole_pressures(kind: ContactKind, load: FloatArray, radius: FloatArray) -> KindPressures:
+    """Pressures of elastic shaft pins in their holes by their loads, N: half-spaces of finite length."""
+    law = LineContactLaw(kind.length, kind.contact_modulus)
+    return pressures_of_law(law, kind, law.approach_at_load(load, radius)[0], radius)
 
 
 def _along_grids(

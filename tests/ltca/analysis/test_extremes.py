@@ -21,10 +21,10 @@ from ltca.analysis.extremes import (
 )
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
-from ltca.compliance.coefficients import without_coupling
 from ltca.drive.units.quantities import ARCSEC
 from ltca.geometry.placement import position_angles
 from ltca.quantities import REFINED
+from ltca.testing.closed_form_bodies import without_coupling
 
 TURN = 2.0 * np.pi
 CASE = "CS-4"  # two kinks and the end of the turn make its transmission error: 4.83″ at 360 positions, 4.98″ at 14401

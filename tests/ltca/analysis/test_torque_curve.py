@@ -9,7 +9,6 @@ import pytest
 
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.torque_curve import LEAST_TORQUE_RATIO, LOST_MOTION, STIFF_FROM, torque_curve
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
@@ -17,6 +16,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play
 from ltca.reading.changes import with_fields
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = np.array([0.1, 0.35])
 

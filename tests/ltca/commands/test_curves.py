@@ -15,11 +15,11 @@ from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.reading.drive_file import shipped_drive
+from ltca.testing.closed_form_bodies import without_coupling
 
 CASE, TURNS, SPEED = "CS-6", 14, 1500.0
 PER_TURN = 88  # orders of 2 z_C + 2 z_PS = 42 a turn are told apart
@@ -340,7 +340,7 @@ def test_compliance_is_passed_on(monkeypatch, tmp_path):
         return without_coupling(drive)
 
     monkeypatch.setattr(engines, "find_coefficients", nothing)
-    monkeypatch.setattr(coefficient_files, "find_case_coefficients", lambda cases, files, near_field, bodies: {})
+    monkeypatch.setattr(coefficient_files, "find_case_coefficients", lambda cases, files, engine, bodies: {})
     words = ["--case", CASE, "--compliance", "hybrid"]
     hybrid = coarse_curves(monkeypatch, tmp_path / "hybrid", *words, "--no-hole-near-field")
     assert len(asked) == 1

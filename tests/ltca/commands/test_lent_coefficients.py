@@ -8,10 +8,10 @@ import ltca
 from ltca.analysis import engines
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
-from ltca.compliance.coefficients import without_coupling
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.testing.closed_form_bodies import without_coupling
 
 CASES = """
 [[case]]

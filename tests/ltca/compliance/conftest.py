@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import InfluenceCoefficients, load_coefficients
+from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.coupled import CoupledCompliance
 from ltca.testing.closed_form_bodies import closed_form_coefficients
 
 
@@ -25,22 +25,12 @@ def closed_form(tmp_path):
 def hold_coefficients(monkeypatch):
     """Return a function from whose call on coefficients are those of the places where they are asked for first.
 
-    They follow the pose by 1e-3 of the tangent, which has none of it. Between chosen contacts they are taken from those of all.
+    They follow the pose by 1e-3 of the tangent, which has none of it.
     """
-    whole, held = InfluenceCoefficients.disc_matrix, {}
+    whole, held = CoupledCompliance.body_flexibility, []
 
-    def first(self, *places, among=False):
-        *places, loaded = places if len(places) == 6 else (*places, None)
-        of_tilts = self.tilting is None
-        if of_tilts not in held:
-            held[of_tilts] = whole(self, *places)
-        matrix = held[of_tilts]
-        if loaded is not None:
-            ahead = np.cumsum([0, *(each.shape[1] for each in places[:2])])
-            chosen = np.concatenate([number + some for number, some in zip(ahead, loaded, strict=True)], axis=1)
-            matrix = np.take_along_axis(matrix, chosen[:, None], axis=2)
-            if among:
-                matrix = np.take_along_axis(matrix, chosen[..., None], axis=1)
-        return matrix.copy()
+    def first(self, places, loaded):
+        held.append(places)
+        return whole(self, held[0], loaded)
 
-    return lambda: monkeypatch.setattr(InfluenceCoefficients, "disc_matrix", first)
+    return lambda: monkeypatch.setattr(CoupledCompliance, "body_flexibility", first)

@@ -8,7 +8,7 @@ import pytest
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import load_coefficients, without_coupling
+from ltca.compliance.coefficients import load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
@@ -18,6 +18,7 @@ from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.pairs import ContactGeometry
 from ltca.mechanics.answers import disc_response
 from ltca.mechanics.contacts import CANDIDATE_MARGIN, ContactSystem, Linearised
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = np.array([0.0, 0.5, 1.7, 4.0])
 

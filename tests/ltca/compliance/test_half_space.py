@@ -15,6 +15,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.testing.bearing_alone import roller_laws
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,7 @@ def contacts_of(drive):
 
 def energy_of(model, response):
     """Return ΣU of all contacts at every position."""
-    laws = model.roller_laws
+    laws = roller_laws(model)
     total = model.pin_law.energy(response.flank.approach, response.flank.effective_radius).sum(axis=1)
     total = total + model.hole_law.energy(response.holes.approach, 1.0).sum(axis=1)
     total = total + laws.inner.energy(response.rollers.inner_approach, laws.inner_radius).sum(axis=1)
@@ -69,7 +70,7 @@ def test_force_is_the_gradient_of_the_energy_and_tangent_its_hessian(drives):
     for drive in drives:
         model = HalfSpaceCompliance.of_drive(drive)
         law = PowerLaw(1.5e4 * drive.disc.thickness**1.1)
-        model = replace(model, pin_law=law, roller_laws=replace(model.roller_laws, inner=law, outer=law))
+        model = replace(model, pin_law=law, inner_law=law, outer_law=law)
         contacts = Reducer(discs=(model,))
         angles, poses, lever = pressed_poses(drive, 6, 1)
         here = contacts.respond(angles, poses)

@@ -196,12 +196,12 @@ def test_what_is_taken_off_a_pin_is_the_patch_of_the_steepest_place(mixed, close
     width = width_of("pin", line, radius)
     # The load at which a patch of finite length is as wide, and what its bodies sink by: less the separation of the surfaces.
     low, high = 0.5 * width**2 / radius, 4.0 * width**2 / radius
-    law, place = model.near_field.pin, np.array([radius])
+    law, place = model.contacts.pin_law, np.array([radius])
     near = np.array(
         [brentq(lambda near: float(law.half_width(np.array([near]), place)[0]) - width, low, high, xtol=1e-15)]
     )
     load = law.load_and_stiffness(near, place)[0]
-    own = np.diag(model.coefficients.disc)[0] + model.own.pin
+    own = np.diag(model.coefficients.disc)[0] + model.bodies[0].alone[0]
     sunk = near - width**2 / (8.0 * radius) + own * load
     expected = sum(
         half_plane_approach(load / thickness, width, DEPTH, *constants(body))

@@ -10,12 +10,12 @@ import pytest
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.arrays import stack_drives
-from ltca.compliance.coefficients import without_coupling
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
 from ltca.reading.changes import with_fields
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = np.array([0.5, 2.0])
 STEEL, ALUMINIUM = (206_000.0, 0.3), (70_000.0, 0.33)
@@ -143,7 +143,7 @@ def test_a_shaft_pin_yields_as_one_approach_at_one_load(drive, closed_form):
     nu, modulus = STEEL[1], STEEL[0]
     share = 2.0 * (1.0 - nu**2) / (np.pi * modulus * drive.disc.thickness)
     yielding = [
-        float(model.near_field.hole.approach_at_load(load, radius)[0][0, 0]) + model.own.hole * 2000.0
+        float(model.contacts.hole_law.approach_at_load(load, radius)[0][0, 0]) + model.bodies[0].alone[2] * 2000.0
         for model in (rigid, soft)
     ]
     line, gap = 2000.0 / drive.disc.thickness, compliance(STEEL)
@@ -225,7 +225,9 @@ def test_holes_in_batches(drive):
     drives = [drive, with_fields(drive, {"pin_shaft.pin_radius": 9.9, "clearance.pin_hole": 0.0})]
     batch = stack_drives([HalfSpaceCompliance.of_drive(each, in_batch=True) for each in drives], ANGLES.size)
     moments = np.repeat([own.wheel_moment() for own in drives], ANGLES.size)
-    found = batch.pressures(solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response).holes
+    found = batch.pressures(
+        solve_equilibrium(Reducer(discs=(batch,)), np.tile(ANGLES, 2), moments).response.parts[0]
+    ).holes
     alone = [analyse(own, ANGLES).pressures.holes for own in drives]
     for field in ("mid", "largest", "half_width"):
         expected = np.concatenate([getattr(holes, field) for holes in alone])

@@ -7,8 +7,8 @@ import pytest
 
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import without_coupling
 from ltca.reading.changes import with_fields
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = np.array([0.5])
 CROWN = "crank_bearing.roller_profile.crown_drop"

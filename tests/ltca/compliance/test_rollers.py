@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from ltca.compliance.half_space import HalfSpaceCompliance, RollerLaws
+from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.errors import ConvergenceError
 from ltca.geometry.pair_motion import RollerRays
 from ltca.laws.contact_law import ContactLaw
-from ltca.testing.bearing_alone import bearing_alone
+from ltca.testing.bearing_alone import RollerLaws, bearing_alone, roller_laws
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,7 @@ class PowerLaw(ContactLaw):
 
 
 def responded(case, displacement, laws, share=None):
-    radii = laws.outer_radius, laws.inner_radius
-    return bearing_alone(case, displacement.ravel(), (laws.outer, laws.inner), radii, share)
+    return bearing_alone(case, displacement.ravel(), laws, share)
 
 
 def balance_rollers(case, displacement, laws, share=None):
@@ -90,7 +89,7 @@ def balanced_by_root_finding(case, laws, displacement, roller, row):
 
 @pytest.fixture(scope="module")
 def half_space_laws(paper_cases):
-    return HalfSpaceCompliance.of_drive(paper_cases["CS-1"]).roller_laws
+    return roller_laws(HalfSpaceCompliance.of_drive(paper_cases["CS-1"]))
 
 
 @pytest.mark.parametrize("clearance", [0.0, 0.03])

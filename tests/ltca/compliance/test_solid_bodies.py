@@ -51,16 +51,12 @@ def plane(drive):
 
 def tilting_scaled(model, scale):
     """A model of one disc with all its tilts by moments changed."""
-    body, own = model.coefficients, model.own.tilting
-    every = {name: scale * getattr(body.tilting, name) for name in ("disc", "pin", "roller", "race")}
-    every |= {f"{name}_logarithm": scale * getattr(body.tilting, f"{name}_logarithm") for name in every}
-    own = replace(own, **{name: scale * getattr(own, name) for name in ("pin", "outer", "inner", "hole")})
-    return replace(
-        model,
-        coefficients=replace(body, tilting=replace(body.tilting, **every)),
-        own=replace(model.own, tilting=own),
-        race_tilting=scale * model.race_tilting,
-    )
+    even, tilting = model.bodies
+    body = tilting.coefficients
+    every = {name: scale * getattr(body, name) for name in ("disc", "pin", "roller", "race")}
+    every |= {f"{name}_logarithm": scale * getattr(body, f"{name}_logarithm") for name in every}
+    own = {name: scale * getattr(tilting, name) for name in ("alone", "race")}
+    return replace(model, bodies=(even, replace(tilting, coefficients=replace(body, **every), **own)))
 
 
 def balanced(drive, disc, angles=ANGLES):
@@ -130,12 +126,7 @@ def test_no_tilt_by_moments_is_the_plane(kind):
     """Solid coefficients whose C' is zero give what bodies without any give: round-off of larger matrices, 1e-12."""
     drive = drive_for(kind)
     disc = tilting_scaled(CoupledCompliance.of_drive(drive, solid(drive), kind), 0.0)
-    alone = replace(
-        disc,
-        coefficients=replace(disc.coefficients, tilting=None),
-        own=replace(disc.own, tilting=None),
-        race_tilting=None,
-    )
+    alone = replace(disc, bodies=disc.bodies[:1])
     _, found = balanced(drive, disc)
     _, expected = balanced(drive, alone)
     np.testing.assert_allclose(found.pose, expected.pose, rtol=0.0, atol=1e-12)
@@ -198,7 +189,8 @@ def displaced(model, pin, approach, tilt):
     centres[pin] += approach
     leans[pin] += tilt
     moved = replace(place, wheel_pin_centres=centres, wheel_pin_leans=leans)
-    return replace(model, discs=(replace(disc, geometry=replace(disc.geometry, placement=moved)),))
+    contacts = replace(disc.contacts, geometry=replace(disc.geometry, placement=moved))
+    return replace(model, discs=(replace(disc, contacts=contacts),))
 
 
 def test_loads_and_moments_are_slopes_of_one_energy(hold_coefficients):
@@ -266,7 +258,7 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
     disc = tilting_scaled(CoupledCompliance.of_drive(drive, solid(drive), "half-space"), 2.0)
     _, found = balanced(drive, disc)
     response, pose = found.response.parts[0], found.pose
-    geometry, laws = disc.geometry, disc.near_field
+    geometry, laws = disc.geometry, disc.contacts
     flank, holes = geometry.flank(ANGLES, pose), geometry.holes(ANGLES, pose)
     tilts = geometry.flank_tilt(ANGLES, pose, flank).tilt, geometry.hole_tilt(pose, holes).tilt
     bores, rays = geometry.bores(ANGLES, pose), geometry.rollers(ANGLES)
@@ -286,9 +278,9 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
     for _ in range(400):
         arm = (rays.outermost - inward) * rays.direction - displacement
         cosine = dot(arm, rays.direction) / np.abs(arm)
-        pins = carried(laws.pin, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
+        pins = carried(laws.pin_law, flank.approach - y[0], tilts[0] - t[0], flank.effective_radius)
         outer = carried(
-            laws.outer,
+            laws.outer_law,
             np.abs(arm) - rays.bore_play - y[1],
             lean - at_bore - t[1],
             disc.geometry.placement.outer_effective_radii,
@@ -296,7 +288,9 @@ def test_twice_the_tilts_by_an_iteration_of_its_own():
         on_holes = carried(
             disc.hole_law, holes.approach - y[2], tilts[1] - t[2], disc.geometry.placement.hole_effective_radii
         )
-        inner = carried(laws.inner, inward - y[3], at_race - lean - t[3], disc.geometry.placement.inner_effective_radii)
+        inner = carried(
+            laws.inner_law, inward - y[3], at_race - lean - t[3], disc.geometry.placement.inner_effective_radii
+        )
         contacts = pins, outer, on_holes, inner
         loads, moments = (tuple(getattr(one, name) for one in contacts) for name in ("load", "moment"))
         # What turns and moves a roller inward, and how that grows as it does.

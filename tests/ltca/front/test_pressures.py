@@ -8,9 +8,9 @@ import xarray as xr
 
 import ltca
 from ltca.analysis.pressure_fields import build_pressure_dataset
-from ltca.compliance.coefficients import without_coupling
 from ltca.errors import DriveError
 from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import without_coupling
 
 ANGLES = [0.3, 1.1]
 LOADS = {

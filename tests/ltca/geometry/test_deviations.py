@@ -192,12 +192,12 @@ def _together_and_alone(drives, angles):
     moment = drives[0].wheel_moment()
     everywhere, series = np.tile(angles, len(drives)), len(drives)
     together = solve_equilibrium(Reducer(discs=(model,)), everywhere, moment, series=series)
-    pressures = model.pressures(together.response)
+    pressures = model.pressures(together.response.parts[0])
     for number, drive in enumerate(drives):
         own = HalfSpaceCompliance.of_drive(drive)
         alone = solve_equilibrium(Reducer(discs=(own,)), angles, moment)
         rows = slice(angles.size * number, angles.size * (number + 1))
-        yield alone, together, rows, own.pressures(alone.response).pins.mid, pressures.pins.mid[rows]
+        yield alone, together, rows, own.pressures(alone.response.parts[0]).pins.mid, pressures.pins.mid[rows]
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
-from ltca.compliance.coefficients import load_coefficients
+from ltca.compliance.coefficients import BodyPlaces, load_coefficients
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
@@ -101,14 +101,10 @@ class DiscByItself:
         rays, bores = self.geometry.rollers(self.angle), self.geometry.bores(self.angle, self.pose)
         resting = rays.outermost * rays.direction - bores.each(bores.displacement, self.inward.shape[1])
         turn = self.pose[:, DISC_ROTATION, None]
-        places = (
-            flank.parameter,
-            np.angle(resting) - turn,
-            np.angle(-self.in_hole) - turn,
-            self.geometry.profile.flank(flank.parameter),
-            float(self.geometry.placement.bore_radius),
-        )
-        rows, counts = self.angle.size, [each.shape[1] for each in places[:3]]
+        place, in_bore, in_hole = self.geometry.placement, np.angle(resting) - turn, np.angle(-self.in_hole) - turn
+        on_flank, radius = self.geometry.profile.flank(flank.parameter), float(place.bore_radius)
+        places = BodyPlaces.on_walls(flank.parameter, on_flank, in_bore, radius, in_hole, place.cranks)
+        rows, counts = self.angle.size, [each.shape[1] for each in (flank.parameter, in_bore, in_hole)]
         ends, found = np.cumsum(counts)[:2], []
         every = [np.tile(np.arange(count), (rows, 1)) for count in counts]
         for body, load in zip(self.disc.body_flexibility(places, every), carried, strict=False):

@@ -15,7 +15,8 @@ def test_places_turn_with_the_disc(paper_cases):
     place, angle = model.geometry.placement, np.array([0.0, 0.7, 4.0])
     pose = np.array([[0.02, -0.01, turn, 0.0] for turn in (0.0, 0.1, -0.1)])
     system = ContactSystem(Reducer(discs=(model,)))
-    _, in_bore, in_hole, *_ = system.respond(angle, pose, None, roughly=False).body_places(0)
+    parameter = system.respond(angle, pose, None, roughly=False).body_places(0).parameter
+    _, in_bore, in_hole = np.split(parameter, np.cumsum((system.pins, system.rollers)), axis=1)
     centre = place.races(angle).middle + pose[:, 0] + 1j * pose[:, 1]
     back = np.exp(-1j * pose[:, 2, None])
     # Rollers touch the inner race; seen from the disc's centre, in its own frame.

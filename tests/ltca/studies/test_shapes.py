@@ -17,7 +17,6 @@ from ltca.analysis import engines
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain, engine_named
 from ltca.commands import optimise, sweep, tolerance
 from ltca.compliance.coefficient_files import cached_file
-from ltca.compliance.coefficients import without_coupling
 from ltca.errors import CycloError, DriveError
 from ltca.geometry.placement import position_angles
 from ltca.output.provenance import code_hash
@@ -32,6 +31,7 @@ from ltca.studies.run_study import run_study
 from ltca.studies.study import run_batch
 from ltca.studies.sweep_file import parse_sweep
 from ltca.studies.tolerance_study import tolerance_study
+from ltca.testing.closed_form_bodies import without_coupling
 
 pytestmark = pytest.mark.slow
 

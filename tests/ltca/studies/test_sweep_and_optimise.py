@@ -12,7 +12,6 @@ import pytest
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
 from ltca.commands import optimise, sweep, tolerance
-from ltca.compliance.coefficients import without_coupling
 from ltca.drive.fields import read_field
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError, DriveError
@@ -36,6 +35,7 @@ from ltca.studies.optimiser import (
 )
 from ltca.studies.study import run_batch
 from ltca.studies.sweep_file import load_sweep, parse_sweep
+from ltca.testing.closed_form_bodies import without_coupling
 
 STUDY = """
 drive = "paper"

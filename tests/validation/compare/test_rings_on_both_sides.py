@@ -2,11 +2,11 @@
 
 import pytest
 
-from ltca.compliance.coefficients import without_coupling
 from ltca.drive.single_discs import single_discs
 from ltca.errors import CycloError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.compare import compared_positions
 
 

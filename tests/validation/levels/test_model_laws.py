@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ltca.compliance.coefficients import without_coupling
+from ltca.testing.closed_form_bodies import without_coupling
 from validation.levels import model_laws
 from validation.levels.model_laws import pair_approaches, widen
 

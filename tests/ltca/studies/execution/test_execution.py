@@ -15,7 +15,6 @@ from pyarrow import parquet
 import ltca
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
-from ltca.compliance.coefficients import without_coupling
 from ltca.errors import CycloError
 from ltca.geometry.placement import position_angles
 from ltca.output.provenance import code_hash
@@ -27,6 +26,7 @@ from ltca.studies.quantities import OF_FRICTION, OF_WIDTH, STAGES
 from ltca.studies.run_study import run_study
 from ltca.studies.study import Study, run_batch
 from ltca.studies.tolerance_study import tolerance_study
+from ltca.testing.closed_form_bodies import without_coupling
 
 POSITIONS = 16
 
