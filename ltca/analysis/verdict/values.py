@@ -24,6 +24,7 @@ from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, underc
 from ltca.analysis.verdict.pin_stress import PinStress, pin_stress
 from ltca.analysis.verdict.places import largest_value, most_of
 from ltca.analysis.verdict.proportions import odd_proportions
+from ltca.arrays import place_of_largest
 from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
 from ltca.drive.members.judgement import ANYWHERE, WHOLE, Check, Value, allowable_anywhere, judge
@@ -123,8 +124,8 @@ def _anywhere(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
         refined = refined_value(summary, LIMITED[scalar].key) if scalar in LIMITED else None
         value = largest_value(analysis, quantity, kind.largest, name, refined)
         if kind.along is not None and value.value is not None:
-            place = np.unravel_index(int(np.nanargmax(kind.largest)), kind.largest.shape)
-            value = replace(value, part=f"{value.part}, z = {kind.along.place[place]:.3g} mm")
+            height = kind.along.place[place_of_largest(kind.largest)]
+            value = replace(value, part=f"{value.part}, z = {height:.3g} mm")
         yield value
 
 
