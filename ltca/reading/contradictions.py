@@ -32,7 +32,7 @@ LARGE_OFFSET = 0.2
 FARTHER = (0.0, 0.01, 0.1)
 COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
 # Whole numbers and lengths that are no likely cause, but may be what was changed.
-CHANGED_COUNTS = (*COUNTS, "pin_wheel.number_of_pins", "disc.number_of_discs", "crank.number")
+CHANGED_COUNTS = (*COUNTS, "pin_wheel.number_of_pins", "disc.number_of_discs")
 CHANGED = (*CAUSES, *CHANGED_COUNTS, "disc.gap")
 # Logarithms of the changes that are tried, from 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as a hole
 # bounds the eccentricity; then of 1.22.

@@ -16,7 +16,7 @@ COUNTS = {
     # Path, a number that goes with the rest of the drive, and the next one, which does not.
     "paper": ("pin_shaft.number_of_pins", 12, 13),
     "sleeved": ("disc.number_of_discs", 2, 3),
-    "rv": ("crank.number", 7, 8),
+    "robot-joint": ("pin_shaft.number_of_pins", 19, 20),
 }
 
 
@@ -34,7 +34,6 @@ def messages(drive, factors, **design):
         ("paper", "pin_wheel.number_of_pins", 28),
         ("paper", "pin_shaft.number_of_pins", 40),
         ("paper", "crank_bearing.number_of_rollers", 40),
-        ("paper", "crank.number", 3),
         ("paper", "crank.eccentricity", 5.0),
         ("paper", "clearance.bearing", 9.0),
         ("sleeved", "disc.number_of_discs", 3),
