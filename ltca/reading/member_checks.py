@@ -553,7 +553,7 @@ def _main_bearing(drive: Drive) -> Iterator[Problem]:
             yield Problem.of(
                 name, f"= {value:g} N/mm", f"must be left out beside {path}.bearings, from which it follows"
             )
-    used, wrong = False, list[str]()
+    used, wrong = False, list[Problem]()
     for number, row in enumerate(bearing.bearings):
         wrong += _bearing_row(f"{path}.bearings.{number}", row, bearing)
         used = used or (bool(row.contact_angle) and row.preload is None)
