@@ -245,7 +245,7 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
             "crank_bearing.roller_radius",
             f"= {bearing.roller_radius:g} mm",
             f"must be at most {0.5 * space:.6g} mm",
-            otherwise=f"it overlaps the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}",
+            otherwise=f"the rollers overlap the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}",
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
         yield Problem.of(
@@ -292,7 +292,7 @@ def _holes(drive: Drive) -> Iterator[Problem]:
             "unless clearance.pin_hole has it)"
         )
         otherwise = (
-            f"it overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
+            f"the hole overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
             "(and half the eccentricity at most)"
         )
         largest = shaft.hole_radius + shaft.seat_play - shaft.pin_radius

@@ -249,8 +249,11 @@ def run_batch(study: Study, number: int) -> BatchResult:
 
 
 def _about_the_factor(design: Design, row: FloatArray, message: str) -> str:
-    """The message of a failed sample, behind the only field that a sweep varies where it names others alone."""
-    if not message or not isinstance(design, SweepDesign) or len(design.names) > 1:
+    """The message of a failed sample, behind the only field that a sweep varies, cases aside, where it names others alone."""
+    if not message or not isinstance(design, SweepDesign):
         return message
-    ((path, value),) = design.fields(row).items()
+    varied = {path: value for path, value in design.fields(row).items() if path != "case"}
+    if len(varied) != 1:
+        return message
+    ((path, value),) = varied.items()
     return message if path in message else f"{path} = {shown(value)}{unit_of(path)}: {message}"

@@ -80,3 +80,13 @@ def test_an_error_carries_the_fields_of_its_mistakes_to_another_process():
     again = pickle.loads(pickle.dumps(caught.value.problems))
     assert {problem.path for problem in again} >= {"pin_shaft.hole_radius", "clearance.bearing"}
     assert [problem.said for problem in again] == [problem.said for problem in caught.value.problems]
+
+
+def test_the_subject_of_what_goes_wrong_was_it():
+    """`crank.eccentricity = 2.3 mm: …: the flank has loops; it overlaps its pin by 1.15 mm` was said of a hole."""
+    for changes in ({"crank.eccentricity": 7.0}, {"crank_bearing.outer_race_radius": 26.0}):
+        with pytest.raises(DriveError) as caught:
+            PAPER.with_fields(changes)
+        for problem in caught.value.problems:
+            assert " it " not in problem.reason(""), problem
+            assert "overlap" in str(caught.value)

@@ -68,6 +68,12 @@ def test_a_value_that_has_no_answer_was_blamed_on_the_torque_or_on_nothing(path,
     assert len(message) > len(shown) + 20
 
 
+def test_cases_beside_the_field_do_not_hide_it():
+    first, second = messages("paper", {"case": ["CS-1", "CS-2"], "disc.thickness": [0.02]})
+    assert first.startswith("disc.thickness = 0.02 mm: ")
+    assert second.startswith("disc.thickness = 0.02 mm: ")
+
+
 def test_a_sample_of_several_factors_keeps_its_message():
     """The values of a sample of many factors stand in its row; messages that agree are counted together."""
     factors = {"disc.thickness": [0.02], "clearance.pin_hole": [0.0]}
