@@ -152,27 +152,38 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     return _yielding(drive, share)
 
 
-def impossible_torque(drive: Drive, torque: float | None = None) -> str:
+def impossible_torque(drive: Drive, torque: float | None = None, *, duty: bool = False) -> str:
     """Return what is wrong with an output torque, N·mm, or that of the load, under which no drive is answered; else nothing.
 
-    Nothing is said where other values look like numbers in another unit: the load of a pin follows from them. The bound is
-    where `unit_warnings` begin to ask, or above it where the given strength of a material is below that of its kind.
+    With `duty` the torques of its entries are asked as well. Nothing is said where other values look like numbers in another
+    unit: the load of a pin follows from them. The bound is where `unit_warnings` begin to ask, or above it where the given
+    strength of a material is below that of its kind.
     """
     used = drive.load.torque if torque is None else torque
-    if not used:
+    asked = {"load.torque" if used == drive.load.torque else "torque": used}
+    asked |= {f"duty.{number}.torque": entry.torque for number, entry in enumerate(drive.duty) if duty}
+    if not any(asked.values()):
         return ""
-    modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
-    pressure = _pressure(drive, used / drive.disc.number_of_discs)
-    crushing, carried = used * (CRUSHED * modulus / pressure) ** 2, carried_torque(drive)
+    bound, told = _torque_bound(drive)
+    beyond = [name for name, value in asked.items() if value > bound]
+    if not beyond or _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
+        return ""
+    return f"{_newton_metres(beyond[0], asked[beyond[0]])}: must be at most {bound:g} N·mm, {told}; {PLAIN_TORQUE}"
+
+
+def _torque_bound(drive: Drive) -> tuple[float, str]:
+    """Output torque beyond which a drive is not answered, to three figures, N·mm, and what it is."""
+    crushed = CRUSHED * contact_modulus(drive.materials.disc, drive.flank_pin)
+    # The pressure goes with the root of the torque.
+    crushing, carried = drive.disc.number_of_discs * (crushed / _pressure(drive, 1.0)) ** 2, carried_torque(drive)
     overload = max(OVERLOADED * carried, UNANSWERED * _torque_of_kind(drive))
     bound = _floored(min(crushing, overload))
-    if used <= bound or _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
-        return ""
-    told = _times_carried(bound, carried)
     if crushing < overload:
-        told = f"where the wheel pins are pressed with some {CRUSHED * modulus:.2g} MPa, {CRUSHED:g} of the modulus of contact"
-    named = "load.torque" if used == drive.load.torque else "torque"
-    return f"{_newton_metres(named, used)}: must be at most {bound:g} N·mm, {told}; {PLAIN_TORQUE}"
+        return (
+            bound,
+            f"where the wheel pins are pressed with some {crushed:.2g} MPa, {CRUSHED:g} of the modulus of contact",
+        )
+    return bound, _times_carried(bound, carried)
 
 
 def _times_carried(torque: float, carried: float) -> str:

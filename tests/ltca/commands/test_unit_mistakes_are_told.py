@@ -92,6 +92,20 @@ def test_a_torque_just_above_the_bound_was_asked_about_and_then_refused(words, c
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("command", ["run", "check"])
+def test_a_torque_of_a_duty_beyond_the_bound_was_asked_about_and_then_blamed_on_a_stiffness(command, capsys, tmp_path):
+    """`pin_shaft.stiffness = …: a shaft pin would yield by 48 mm` was the error, after half a minute."""
+    path = tmp_path / "drive.toml"
+    duty = '\n[[duty]]\ntorque = "300 N m"\nspeed = 100.0\nshare = 0.5\n\n[[duty]]\ntorque = 2e8\nspeed = 100.0\nshare = 0.5\n'
+    path.write_text(shipped_drive("paper").partition("[[case]]")[0] + duty, encoding="utf-8")
+    assert main([command, str(path), "--quick", "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert (
+        "duty.1.torque = 2e+08 N·mm is 200000 N·m: must be at most 1.08e+08 N·mm, 250 times what this drive carries"
+        in line
+    )
+
+
 @pytest.mark.parametrize("name", SHIPPED_DRIVES)
 def test_no_torque_is_asked_about_below_the_bound_and_none_is_answered_above(name):
     drive = next(iter(load_drive(name).cases.values()))
