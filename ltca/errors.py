@@ -133,6 +133,10 @@ class DriveError(CycloError):
         super().__init__(text)
 
 
+class OverloadError(DriveError):
+    """The torque cannot be carried: contacts would be wider than the bodies are curved."""
+
+
 class FaultError(CycloError):
     """A fault that is not of the input, as a full disc or workers that died."""
 

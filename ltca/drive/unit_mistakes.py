@@ -26,7 +26,7 @@ from ltca.drive.members.operation import LIGHT_SHARE
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
 from ltca.drive.units.table import range_of
-from ltca.errors import ConvergenceError, CycloError, DriveError
+from ltca.errors import ConvergenceError, CycloError, DriveError, OverloadError
 from ltca.quantities import LIMITED
 
 P = ParamSpec("P")
@@ -152,33 +152,34 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     return _yielding(drive, share)
 
 
-def impossible_torque(drive: Drive, torque: float | None = None, *, duty: bool = False) -> str:
+def impossible_torque(drive: Drive, torque: float | None = None, *, duty: bool = False, in_parts: bool = False) -> str:
     """Return what is wrong with an output torque, N·mm, or that of the load, under which no drive is answered; else nothing.
 
     With `duty` the torques of its entries are asked as well. Nothing is said where other values look like numbers in another
     unit: the load of a pin follows from them. The bound is where `unit_warnings` begin to ask, or above it where the given
-    strength of a material is below that of its kind.
+    strength of a material is below that of its kind. What is answered `in_parts`, at the part of a torque that is carried, has a
+    larger one: where pins are crushed.
     """
     used = drive.load.torque if torque is None else torque
     asked = {"load.torque" if used == drive.load.torque else "torque": used}
     asked |= {f"duty.{number}.torque": entry.torque for number, entry in enumerate(drive.duty) if duty}
     if not any(asked.values()):
         return ""
-    bound, told = _torque_bound(drive)
+    bound, told = _torque_bound(drive, in_parts=in_parts)
     beyond = [name for name, value in asked.items() if value > bound]
     if not beyond or _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
         return ""
     return f"{_newton_metres(beyond[0], asked[beyond[0]])}: must be at most {bound:g} N·mm, {told}; {PLAIN_TORQUE}"
 
 
-def _torque_bound(drive: Drive) -> tuple[float, str]:
+def _torque_bound(drive: Drive, *, in_parts: bool) -> tuple[float, str]:
     """Output torque beyond which a drive is not answered, to three figures, N·mm, and what it is."""
     crushed = CRUSHED * contact_modulus(drive.materials.disc, drive.flank_pin)
     # The pressure goes with the root of the torque.
     crushing, carried = drive.disc.number_of_discs * (crushed / _pressure(drive, 1.0)) ** 2, carried_torque(drive)
     overload = max(OVERLOADED * carried, UNANSWERED * _torque_of_kind(drive))
-    bound = _floored(min(crushing, overload))
-    if crushing < overload:
+    bound = _floored(crushing if in_parts else min(crushing, overload))
+    if in_parts or crushing < overload:
         return (
             bound,
             f"where the wheel pins are pressed with some {crushed:.2g} MPa, {CRUSHED:g} of the modulus of contact",
@@ -270,14 +271,15 @@ def explain_failure(error: CycloError, drive: Drive, torque: float | None = None
     The error itself is returned where no value looks like a mistake, or where it is about something else. `torque` is the
     output torque, N·mm; that of the load by default.
     """
-    carried = isinstance(error, DriveError) and any("cannot be carried" in problem for problem in error.problems)
-    if not carried and not isinstance(error, ConvergenceError):
+    if not isinstance(error, OverloadError | ConvergenceError):
         return error
     found = likely_unit_mistakes(drive, torque)
     if not found:
         return error
-    told = f"; {error.problems[0]}" if isinstance(error, DriveError) else ""
-    return DriveError([*found[:-1], f"{found[-1]}{told}"])
+    if isinstance(error, OverloadError):
+        return OverloadError([*found[:-1], f"{found[-1]}; {error.problems[0]}"])
+    used = drive.load.torque if torque is None else torque
+    return OverloadError(found) if used > OVERLOADED * carried_torque(drive) else DriveError(found)
 
 
 @contextmanager

@@ -31,7 +31,7 @@ from ltca.drive.members.judgement import ANYWHERE, WHOLE, Check, Value, allowabl
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
-from ltca.errors import DriveError
+from ltca.errors import OverloadError
 from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.play import PLAY_SAMPLED, preload_words
 from ltca.quantities import LIMITED, QUANTITIES
@@ -312,9 +312,7 @@ def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
         return
     try:
         lives = bearing_lives(analysis)
-    except DriveError as error:
-        if "cannot be carried" not in str(error):
-            raise
+    except OverloadError as error:
         yield from (Value(quantity=name, value=None, reason=error.problems[0]) for name in named)
         return
     told = ("; ".join(lives.not_rated)) if lives.not_rated else "there is no speed (load.speed)"
