@@ -10,6 +10,9 @@ from typing import Any
 import pytest
 from _pytest.doctest import DoctestModule
 
+APART = {"tests/test_printed_commands.py::test_every_printed_command_runs_small[python]"}
+"""Tests that take as long as all others of their file together: another worker takes them."""
+
 pytest_plugins = ("needs", "shards")  # tests/plugins, by `pythonpath` of pyproject.toml
 
 # Modules and tests stay until the end: walking them again and again while they are made is a tenth of the collection.
@@ -19,6 +22,20 @@ gc.disable()
 def pytest_configure(config: pytest.Config) -> None:
     """Deal out files, not tests (``--dist=loadfile``: what those of a file share is made once), in the order they stand in."""
     config.option.loadscopereorder = False
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Deal out files, and the tests of `APART` for themselves; other ways of dealing are those of pytest-xdist."""
+    if config.option.dist != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    class Files(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return nodeid if nodeid in APART else super()._split_scope(nodeid)
+
+    return Files(config, log)
 
 
 @pytest.hookimpl(trylast=True)

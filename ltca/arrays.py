@@ -27,6 +27,25 @@ _NAMES: dict[type[Any], tuple[str, ...]] = {}
 """Fields of the types met so far: `dataclasses.fields` costs as much as a small array."""
 
 
+EQUAL_PARTS = 1e-9
+"""Relative difference up to which values of equal parts are equal: more than round-off, less than any physical difference."""
+
+
+def place_of_largest(values: FloatArray) -> tuple[int, ...]:
+    """Return the first place at which values are the largest, round-off aside; what is not a number is left out.
+
+    Of equal parts the last bit would decide, and another machine would name another part.
+
+    Examples
+    --------
+    >>> place_of_largest(np.array([[1.0, 3.0], [3.0 * (1.0 + 1e-15), np.nan]]))
+    (0, 1)
+    """
+    largest = float(np.nanmax(values))
+    least = largest - EQUAL_PARTS * abs(largest) if np.isfinite(largest) else largest
+    return tuple(map(int, np.unravel_index(np.flatnonzero(values >= least)[0], values.shape)))
+
+
 def map_arrays(function: Callable[..., Any], *trees: Any) -> Any:
     """Return a tree with every array, of one axis at least, replaced by a function of it and of those in its place elsewhere.
 

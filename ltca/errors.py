@@ -2,12 +2,82 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 MOST_TOLD = 10
 """Mistakes that are listed; of more the number is given."""
+
+
+class Problem(str):
+    """Sentence about one field of a drive, with the field as data: it names field, value, bound and unit.
+
+    Attributes
+    ----------
+    path : str
+        The field; empty where the sentence alone is known, as are the others then.
+    subject : str
+        Field and value, as the sentence begins.
+    said : str
+        What is said of it, behind the colon.
+    consequence : str
+        What would go wrong beyond the bound; empty where the sentence does not say it apart from the bound.
+    trouble : str
+        What is wrong, said before the bound; empty as well.
+
+    Examples
+    --------
+    >>> problem = Problem.of("pin_wheel.pin_radius", "= 20 mm", "must be less than 14 mm", otherwise="pins overlap")
+    >>> problem
+    'pin_wheel.pin_radius = 20 mm: must be less than 14 mm, or pins overlap'
+    >>> problem.path, problem.consequence
+    ('pin_wheel.pin_radius', 'pins overlap')
+    """
+
+    path: str = ""
+    subject: str = ""
+    said: str = ""
+    consequence: str = ""
+    trouble: str = ""
+
+    @classmethod
+    def of(cls, path: str, value: str, said: str, *, otherwise: str = "", trouble: str = "", shown: str = "") -> Self:
+        """Return the sentence on a field and its value, "= 4 mm" or empty; `shown` is what the field is called in it.
+
+        A bound that is `said` is followed by what goes wrong `otherwise`, or comes behind the `trouble`.
+        """
+        subject = f"{shown or path} {value}".rstrip()
+        words = f"{said}, or {otherwise}" if otherwise else f"{trouble}; {said}" if trouble else said
+        problem = cls(f"{subject}: {words}")
+        problem.path, problem.subject, problem.said = path, subject, words
+        problem.consequence, problem.trouble = otherwise, trouble
+        return problem
+
+    def is_about(self, path: str) -> bool:
+        """Tell whether the sentence is about a field, or about the table or array that it is in."""
+        return path == self.path or (bool(self.path) and path.startswith(f"{self.path}."))
+
+    def reason(self, cause: str) -> str:
+        """Return what is wrong without the bound, for a sentence about the field `cause`."""
+        if self.consequence:
+            return self.consequence
+        words = self.trouble or self.said or str(self)
+        return f"{self.subject}: {words}" if self.subject and self.path != cause else words
+
+    def reworded(self, reword: Callable[[str], str]) -> Self:
+        """Return the sentence with other words, as of the paths of a single disc."""
+        problem = type(self)(reword(self))
+        for name in Problem.__annotations__:
+            setattr(problem, name, reword(getattr(self, name)))
+        return problem
+
+    def within(self, path: str, words: str) -> Problem:
+        """Return the sentence behind words about the field under which it holds, as a temperature."""
+        problem = Problem(f"{words}: {self}")
+        problem.path, problem.consequence = path, self.consequence
+        problem.trouble = f"{words}: {self.subject}: {self.trouble}" if self.trouble else ""
+        return problem
 
 
 class CycloError(Exception):
@@ -61,6 +131,10 @@ class DriveError(CycloError):
             told += f" ({beside})" if beside else ""
             text = f"{head}{told}\n" + "\n".join(f"  {problem}" for problem in self.problems[:MOST_TOLD])
         super().__init__(text)
+
+
+class OverloadError(DriveError):
+    """The torque cannot be carried: contacts would be wider than the bodies are curved."""
 
 
 class FaultError(CycloError):

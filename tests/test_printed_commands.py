@@ -686,7 +686,7 @@ def kind_of(words):
 
 @pytest.fixture(scope="module")
 def runner(tmp_path_factory):
-    """The folder of a reader, and what runs commands in it; all kinds share what one of them derives."""
+    """The folder of a reader, and what runs commands in it; kinds that one worker runs share what is derived."""
     place = tmp_path_factory.mktemp("printed")
     (place / "here").mkdir()
     set_up(place / "here")

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import ast
+import gc
+import importlib.util
 import json
 import os
 import subprocess
 import sys
 import tomllib
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -37,16 +40,22 @@ def test_every_known_file_is_there():
 
 def test_a_test_among_the_slowest_had_got_parameters_and_another_name():
     """Every test listed is there, and named with parameters where its function is parametrized."""
+
+    @cache
+    def functions_of(file):
+        """The test functions of a file by their names, with the text of their marks."""
+        tree = ast.parse((ROOT / file).read_text(encoding="utf-8")) if (ROOT / file).is_file() else ast.Module()
+        nodes = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+        return {node.name: "".join(map(ast.unparse, node.decorator_list)) for node in nodes}
+
     gone = []
     for name in tomllib.loads((ROOT / "tests" / "budget.toml").read_text(encoding="utf-8"))["seconds"]:
         file, _, test = name.partition("::")
         if not file.startswith("tests/"):  # an example of a docstring
             continue
         function, bracket, _ = test.partition("[")
-        tree = ast.parse((ROOT / file).read_text(encoding="utf-8")) if (ROOT / file).is_file() else ast.Module()
-        nodes = {node.name: node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-        marks = "".join(map(ast.unparse, nodes[function].decorator_list)) if function in nodes else ""
-        if function not in nodes or ("parametrize(" in marks and not bracket):
+        marks = functions_of(file).get(function)
+        if marks is None or ("parametrize(" in marks and not bracket):
             gone.append(name)
     assert gone == []
 
@@ -110,6 +119,40 @@ def test_shards_run_each_test_once_and_go_on_with_what_has_not_passed(suite, wor
     status, ran, text = suite("--shard", "2/2", workers=workers)
     assert (status, ran) == (0, ""), text
     assert "shard 2/2: nothing left to run; 8 passed in earlier runs of any shard" in text
+
+
+@pytest.mark.slow
+def test_half_of_the_printed_commands_waited_for_the_other_half(tmp_path):
+    """One worker ran all of them, 21 minutes, while the other had nothing left: files alone were dealt out."""
+    spec = importlib.util.spec_from_file_location("dealing", ROOT / "conftest.py")
+    dealing = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(dealing)
+    gc.enable()  # which it does after a collection
+    (apart,) = dealing.APART
+    file, _, test = apart.partition("::")
+    name, _, kind = test.removesuffix("]").partition("[")
+    assert f"def {name}(kind" in (ROOT / file).read_text(encoding="utf-8")
+    (tmp_path / "tests").mkdir()
+    source = (ROOT / "conftest.py").read_text(encoding="utf-8")
+    (tmp_path / "conftest.py").write_text(source.replace("pytest_plugins", "no_plugins"), encoding="utf-8")
+    (tmp_path / file).write_text(
+        "import os, pytest\n\ndef ran(test):\n    with open('ran', 'a') as log:\n"
+        "        log.write(f\"{test} {os.environ['PYTEST_XDIST_WORKER']}\\n\")\n\ndef test_a():\n    ran('a')\n\n"
+        f"def test_b():\n    ran('b')\n\n@pytest.mark.parametrize('kind', ['one', '{kind}', 'two'])\n"
+        f"def {name}(kind):\n    ran(kind)\n",
+        encoding="utf-8",
+    )
+    environment = {key: text for key, text in os.environ.items() if not key.startswith("PYTEST_")}
+    environment |= {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+    command = [sys.executable, "-m", "pytest", "-p", "xdist", "-n", "2", "--dist=loadfile", "-p", "no:cacheprovider"]
+    done = subprocess.run(
+        command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=300
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    workers = dict(line.split() for line in (tmp_path / "ran").read_text(encoding="utf-8").splitlines())
+    assert workers.pop(kind) not in workers.values()
+    assert len(workers) == 4
+    assert len(set(workers.values())) == 1
 
 
 @pytest.mark.parametrize(

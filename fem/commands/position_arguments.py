@@ -55,6 +55,6 @@ def chosen_case(arguments: argparse.Namespace) -> tuple[DriveFile, str, Drive]:
     file = load_drive(arguments.drive)
     case, drive = next(iter(file.select_warm([arguments.case] if arguments.case else None).items()))
     if hasattr(arguments, "torque"):
-        refuse_impossible_torques([file.cases[case]], arguments.torque)
+        refuse_impossible_torques([file.cases[case]], arguments.torque, duty=False)
     tell_unit_mistakes([file.cases[case]], getattr(arguments, "torque", None))
     return file, case, drive

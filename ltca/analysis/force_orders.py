@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.transmission_error_orders import LEAST_SINGULAR_RATIO, OrderFit
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import ComplexArray, FloatArray, place_of_largest
 from ltca.compliance.response import Response
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -91,16 +91,12 @@ class ForceSpectrum:
     def largest(self) -> tuple[FloatArray, tuple[tuple[int, ...], ...]]:
         """Return the largest amplitude of each order among all parts, N, shape (orders,), and the numbers of the parts."""
         sizes = np.abs(self.amplitude)
-        flat = sizes.reshape(len(sizes), -1)
-        places = np.argmax(flat, axis=1)
-        numbers = [tuple(map(int, np.unravel_index(place, sizes.shape[1:]))) for place in places]
-        return np.asarray(flat.max(axis=1)), tuple(numbers)
+        return sizes.reshape(len(sizes), -1).max(axis=1), tuple(map(place_of_largest, sizes))
 
     @property
     def strongest(self) -> tuple[int, ...]:
         """Numbers of the part whose orders together are the largest, by root mean square."""
-        power = np.sum(np.abs(self.amplitude) ** 2, axis=0)
-        return tuple(map(int, np.unravel_index(int(np.argmax(power)), power.shape)))
+        return place_of_largest(np.sum(np.abs(self.amplitude) ** 2, axis=0))
 
 
 def single_forces(

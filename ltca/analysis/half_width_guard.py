@@ -27,7 +27,7 @@ from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import BORNE
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, OverloadError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates, X, Y
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
@@ -72,7 +72,7 @@ def check_half_widths(
 
     Raises
     ------
-    DriveError
+    OverloadError
         One sentence for each kind of contact that is too wide, naming the widest.
     """
     each = pressures.pins.half_width.shape[0] // len(drives)
@@ -103,7 +103,7 @@ def check_half_widths(
                 f"be at most {bound:.4g} mm ({HALF_WIDTH_BOUND:g} of the smallest radius in contact)"
             )
     if problems:
-        raise DriveError(problems)
+        raise OverloadError(problems)
 
 
 def _cause(drive: Drive, contacts: Response, name: str, worst: tuple[np.intp, ...], torque: float) -> str:

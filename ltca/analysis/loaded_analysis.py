@@ -49,7 +49,7 @@ from ltca.equilibrium.partial_balance import (
     balance_what_can_be,
 )
 from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
-from ltca.errors import ConvergenceError, DriveError, shortened
+from ltca.errors import ConvergenceError, DriveError, OverloadError, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
 from ltca.geometry.pairs import ContactGeometry
@@ -445,11 +445,11 @@ def analyse(
         pressures = prepared.model.pressures(full.found.response)
         try:
             check_half_widths([case.drive], full.found.response, pressures, case.torque)
-        except DriveError as error:
+        except OverloadError as error:
             seized = None if case.written is None else seizing_words(case.written)
             if seized is None:
                 raise
-            raise DriveError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
+            raise OverloadError([f"temperature: {seized}; {problem}" for problem in error.problems]) from error
         start = _poses_near(near, prepared.model, light=True)
         if start is None:
             start = np.full((angle.size, full.found.pose.shape[1]), np.nan)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, place_of_largest
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,15 +62,15 @@ def pressure_safety(pressure: FloatArray, limit: float) -> PressureSafety:
     largest = float(np.max(pressure))
     if not largest > 0.0:
         raise ValueError("no pin is pressed on the flank")
-    position, pin = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    position, pin = place_of_largest(pressure)
     worst = pressure.max(axis=0)
     return PressureSafety(
         limit=limit,
         largest=largest,
         safety=limit / largest,
         load_factor=(limit / largest) ** 2,
-        position=int(position),
-        pin=int(pin),
+        position=position,
+        pin=pin,
         per_pin=np.where(worst > 0.0, limit / np.where(worst > 0.0, worst, 1.0), np.inf),
     )
 

@@ -61,7 +61,7 @@ def execute(arguments: argparse.Namespace) -> int:
     file = load_drive(arguments.drive)
     cases = file.select(arguments.case)
     settle_compliance(arguments, cases.values())
-    refuse_impossible_torques(cases.values(), arguments.torque)
+    refuse_impossible_torques(cases.values(), arguments.torque, in_parts=True)
     tell_unit_mistakes(cases.values(), arguments.torque, (file.limits[name] for name in cases))
     out = arguments.out or default_folder(file.name, "check")
     require_folder(out)

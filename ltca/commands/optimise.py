@@ -19,6 +19,7 @@ from ltca.reading.arguments import (
     add_page_argument,
     count_argument,
     default_folder,
+    refuse_impossible_torques,
     tell_unit_mistakes,
 )
 
@@ -82,6 +83,7 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.commands.actions.optimise import FRONT, problem_of, search_and_write
 
     engine = compliance_of(arguments, file.cases.values())
+    refuse_impossible_torques([file.cases[case]])
     tell_unit_mistakes([file.cases[case]])
     problem = problem_of(file.cases[case], arguments)
     figures = figure_files(arguments.figures, "pareto" if len(problem.aims) == 2 else "search")

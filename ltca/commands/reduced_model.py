@@ -12,7 +12,7 @@ from ltca.commands.compliance_arguments import (
     settle_compliance,
 )
 from ltca.errors import DriveError
-from ltca.reading.arguments import default_folder, quantity_argument, tell_unit_mistakes
+from ltca.reading.arguments import default_folder, quantity_argument, refuse_impossible_torques, tell_unit_mistakes
 
 SIMULATORS = ("json", "mujoco", "urdf", "modelica", "fmu")
 ONLY_SIMULATORS = ("compliance", "quick", "coefficients", "bodies", "no_hole_near_field", "speed")
@@ -57,6 +57,7 @@ def export_model(arguments: argparse.Namespace) -> int:
     name = next(iter(file.select([arguments.case] if arguments.case else None)))
     cases = file.select_warm([name])
     settle_compliance(arguments, cases.values())
+    refuse_impossible_torques([file.cases[name]])
     tell_unit_mistakes([file.cases[name]])
     out = arguments.out or default_folder(file.name, "export")
     require_folder(out)

@@ -12,6 +12,7 @@ from math import pi
 import numpy as np
 
 from ltca.drive.parts import Drive, contact_modulus
+from ltca.errors import Problem
 
 ROUND_OFF = 4.0 * np.finfo(float).eps
 """Round-off of an approach as a part of the pin circle radius; times the stiffness it bounds the residual below."""
@@ -30,11 +31,17 @@ def least_torque(drive: Drive) -> float:
     return float(residual / ROUND_OFF_BOUND * drive.crank.eccentricity * abs(drive.reduction_ratio))
 
 
-def torque_problem(drive: Drive, path: str, torque: float, *, zero: bool) -> Iterator[str]:
-    """Yield what is wrong with a torque that is too small to be balanced, N·mm; `zero` tells whether it may be 0."""
+def torque_problem(drive: Drive, path: str, torque: float, *, zero: bool, shown: str = "") -> Iterator[Problem]:
+    """Yield what is wrong with a torque that is too small to be balanced, N·mm; `zero` tells whether it may be 0.
+
+    It is called `shown` in the sentence, by default by its path.
+    """
     least = least_torque(drive)
     if 0.0 < torque < least:
-        yield (
-            f"{path} = {torque:g} N·mm: must be {'0 or ' if zero else ''}at least {least:.2g} N·mm in this drive: below, the "
-            f"round-off of the pin circle radius is more than {ROUND_OFF_BOUND:g} of the loads"
+        yield Problem.of(
+            path,
+            f"= {torque:g} N·mm",
+            f"must be {'0 or ' if zero else ''}at least {least:.2g} N·mm in this drive: below, the round-off "
+            f"of the pin circle radius is more than {ROUND_OFF_BOUND:g} of the loads",
+            shown=shown,
         )

@@ -11,6 +11,7 @@ from math import acos, cos, pi, radians, sin, sqrt
 
 from ltca.drive.fingerprints import fingerprint_of
 from ltca.drive.parts import Drive, PinWheel
+from ltca.errors import Problem
 
 LEAST_HALF_ARC = radians(45.0)
 """Half the arc of a seat below which it cannot lead its pin tangentially."""
@@ -71,7 +72,7 @@ def bolt_patch_radius(drive: Drive) -> float:
     return BOLT_PATCH * (outer - wheel.pin_circle_radius - seat_radius(wheel))
 
 
-def ring_mesh_problems(drive: Drive) -> Iterator[str]:
+def ring_mesh_problems(drive: Drive) -> Iterator[Problem]:
     """Yield why the ring of a drive cannot be one of finite elements, one sentence each: its seats have to lead the pins, its
     bolts to stand in metal.
     """
@@ -81,29 +82,36 @@ def ring_mesh_problems(drive: Drive) -> Iterator[str]:
     sharp, short = inner_radius_bounds(wheel)
     inner, circle, seat = ring.inner_radius, wheel.pin_circle_radius, seat_radius(wheel)
     if inner < sharp:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be at least {sharp:g} mm for finite elements of the ring, or metal "
-            "between two seats ends too sharp for a mesh"
+        yield Problem.of(
+            "ring.inner_radius",
+            f"= {inner:g} mm",
+            f"must be at least {sharp:g} mm for finite elements of the ring",
+            otherwise="metal between two seats ends too sharp for a mesh",
         )
     if inner > short:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be at most {short:g} mm for finite elements of the ring, or the seats "
-            "are too flat to lead the pins"
+        yield Problem.of(
+            "ring.inner_radius",
+            f"= {inner:g} mm",
+            f"must be at most {short:g} mm for finite elements of the ring",
+            otherwise="the seats are too flat to lead the pins",
         )
     between = 2.0 * circle * sin(pi / wheel.number_of_pins) - 2.0 * seat
     if between <= LEAST_METAL * seat and inner < circle:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be at least {circle:g} mm (pin_wheel.pin_circle_radius) for finite "
-            f"elements of the ring: {between:.4g} mm of metal are left between two seats"
+        yield Problem.of(
+            "ring.inner_radius",
+            f"= {inner:g} mm",
+            f"must be at least {circle:g} mm (pin_wheel.pin_circle_radius) for finite elements of the ring: "
+            f"{between:.4g} mm of metal are left between two seats",
         )
     bolts, patch = ring.bolts, bolt_patch_radius(drive)
     if bolts is None or ring.flange == "built-in":
         return
     low, high = circle + seat + patch, ring.outer_radius - patch
     if not low <= bolts.circle_radius <= high:
-        yield (
-            f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be {low:g} to {high:g} mm for finite elements of the "
-            "ring, in metal outside the seats"
+        yield Problem.of(
+            "ring.bolts.circle_radius",
+            f"= {bolts.circle_radius:g} mm",
+            f"must be {low:g} to {high:g} mm for finite elements of the ring, in metal outside the seats",
         )
 
 

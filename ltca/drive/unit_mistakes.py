@@ -14,7 +14,7 @@ import inspect
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import fields
-from math import cos, pi, sin, sqrt
+from math import cos, floor, log10, pi, sin, sqrt
 from typing import ParamSpec, TypeVar
 
 from ltca.drive.declaration import declared_fields
@@ -26,7 +26,7 @@ from ltca.drive.members.operation import LIGHT_SHARE
 from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive, Material, Materials, Preload, contact_modulus
 from ltca.drive.units.table import range_of
-from ltca.errors import ConvergenceError, CycloError, DriveError
+from ltca.errors import ConvergenceError, CycloError, DriveError, OverloadError
 from ltca.quantities import LIMITED
 
 P = ParamSpec("P")
@@ -52,8 +52,12 @@ UNLOADED = 1.0 / 500.0
 torques are a quarter of it and more, a hundredth of them is above; newton metres read as N·mm are about a thousandth."""
 OVERLOADED = 250.0
 """Multiple of it above which a torque is likely a thousandfold: of a rated torque that is a quarter of it."""
+UNANSWERED = 200.0
+"""Multiple of the torque that a drive carries by the strength of its kind of materials beyond which none is answered: of shipped
+and published drives some are at 120 times it, none at 250. With a weaker material given, a drive carries less than it bears."""
 LIGHTEST = 1.0 / 5000.0
 """Fraction of the torque below which the light torque is likely in newton metres: usual ones are 1/100 to 1/10."""
+PLAIN_TORQUE = 'a plain number is N·mm, newton metres are written "377.3 N m"'
 PHASES = 4
 """Places of the wheel pins between two teeth at which the torque of `carried_torque` is taken, the least of them."""
 STRENGTH = 0.0075, 0.03
@@ -148,24 +152,54 @@ def likely_unit_mistakes(drive: Drive, torque: float | None = None) -> list[str]
     return _yielding(drive, share)
 
 
-def impossible_torque(drive: Drive, torque: float | None = None) -> str:
+def impossible_torque(drive: Drive, torque: float | None = None, *, duty: bool = False, in_parts: bool = False) -> str:
     """Return what is wrong with an output torque, N·mm, or that of the load, under which no drive is answered; else nothing.
 
-    Nothing is said where other values look like numbers in another unit: the load of a pin follows from them.
+    With `duty` the torques of its entries are asked as well. Nothing is said where other values look like numbers in another
+    unit: the load of a pin follows from them. The bound is where `unit_warnings` begin to ask, or above it where the given
+    strength of a material is below that of its kind. What is answered `in_parts`, at the part of a torque that is carried, has a
+    larger one: where pins are crushed.
     """
     used = drive.load.torque if torque is None else torque
-    pressure = _pressure(drive, used / drive.disc.number_of_discs)
-    if pressure <= CRUSHED * contact_modulus(drive.materials.disc, drive.flank_pin):
+    asked = {"load.torque" if used == drive.load.torque else "torque": used}
+    asked |= {f"duty.{number}.torque": entry.torque for number, entry in enumerate(drive.duty) if duty}
+    if not any(asked.values()):
         return ""
-    if _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
+    bound, told = _torque_bound(drive, in_parts=in_parts)
+    beyond = [name for name, value in asked.items() if value > bound]
+    if not beyond or _impossible(drive) or _modulus(drive) or any(_odd_lengths(drive)):
         return ""
-    return _crushing("load.torque" if used == drive.load.torque else "torque", used, pressure)
+    return f"{_newton_metres(beyond[0], asked[beyond[0]])}: must be at most {bound:g} N·mm, {told}; {PLAIN_TORQUE}"
+
+
+def _torque_bound(drive: Drive, *, in_parts: bool) -> tuple[float, str]:
+    """Output torque beyond which a drive is not answered, to three figures, N·mm, and what it is."""
+    crushed = CRUSHED * contact_modulus(drive.materials.disc, drive.flank_pin)
+    # The pressure goes with the root of the torque.
+    crushing, carried = drive.disc.number_of_discs * (crushed / _pressure(drive, 1.0)) ** 2, carried_torque(drive)
+    overload = max(OVERLOADED * carried, UNANSWERED * _torque_of_kind(drive))
+    bound = _floored(crushing if in_parts else min(crushing, overload))
+    if in_parts or crushing < overload:
+        return (
+            bound,
+            f"where the wheel pins are pressed with some {crushed:.2g} MPa, {CRUSHED:g} of the modulus of contact",
+        )
+    return bound, _times_carried(bound, carried)
+
+
+def _times_carried(torque: float, carried: float) -> str:
+    """A large torque as a multiple of the one that a drive carries, N·mm."""
+    return f"{rounded(torque / carried)} times {_carried_words(carried)}"
+
+
+def _carried_words(carried: float) -> str:
+    return f"what this drive carries (some {rounded(carried / 1000.0)} N·m by the pressure of its flank)"
 
 
 def _crushing(named: str, value: float, pressure: float, share_of_it: str = "") -> str:
     return (
-        f"{named} = {value:g} N·mm is {value / 1000.0:g} N·m{share_of_it} and would press the wheel pins with some "
-        f'{pressure:.2g} MPa, which no steel bears; a plain number is N·mm, newton metres are written "377.3 N m"'
+        f"{_newton_metres(named, value)}{share_of_it} and would press the wheel pins with some {pressure:.2g} MPa, which no "
+        f"steel bears; {PLAIN_TORQUE}"
     )
 
 
@@ -237,14 +271,15 @@ def explain_failure(error: CycloError, drive: Drive, torque: float | None = None
     The error itself is returned where no value looks like a mistake, or where it is about something else. `torque` is the
     output torque, N·mm; that of the load by default.
     """
-    carried = isinstance(error, DriveError) and any("cannot be carried" in problem for problem in error.problems)
-    if not carried and not isinstance(error, ConvergenceError):
+    if not isinstance(error, OverloadError | ConvergenceError):
         return error
     found = likely_unit_mistakes(drive, torque)
     if not found:
         return error
-    told = f"; {error.problems[0]}" if isinstance(error, DriveError) else ""
-    return DriveError([*found[:-1], f"{found[-1]}{told}"])
+    if isinstance(error, OverloadError):
+        return OverloadError([*found[:-1], f"{found[-1]}; {error.problems[0]}"])
+    used = drive.load.torque if torque is None else torque
+    return OverloadError(found) if used > OVERLOADED * carried_torque(drive) else DriveError(found)
 
 
 @contextmanager
@@ -338,8 +373,24 @@ def carried_torque(drive: Drive) -> float:
     pair = (drive.materials.disc, drive.flank_pin)
     known = [part.allowable_pressure for part in pair if part.allowable_pressure is not None]
     softest = min(part.youngs_modulus for part in pair)
-    allowed = min(*known, STRONGEST * softest) if known else STRENGTH[softest < METALS[0]] * softest
-    modulus = contact_modulus(*pair)
+    allowed = min(*known, STRONGEST * softest) if known else _strength_of_kind(softest)
+    return _torque_of_discs(drive, allowed)
+
+
+def _torque_of_kind(drive: Drive) -> float:
+    """Torque that a drive carries (`carried_torque`) by the strength of its kind of materials, whatever is given, N·mm."""
+    softest = min(part.youngs_modulus for part in (drive.materials.disc, drive.flank_pin))
+    return _torque_of_discs(drive, _strength_of_kind(softest))
+
+
+def _strength_of_kind(softest: float) -> float:
+    """Allowable flank pressure of a body of this Young's modulus without a given one, MPa."""
+    return STRENGTH[softest < METALS[0]] * softest
+
+
+def _torque_of_discs(drive: Drive, allowed: float) -> float:
+    """Torque of all discs at which the first of the pins has the allowed pressure, N·mm."""
+    modulus = contact_modulus(drive.materials.disc, drive.flank_pin)
     of_wheel = min(_torque_at_pressure(drive, allowed, modulus, phase / PHASES) for phase in range(PHASES))
     return drive.disc.number_of_discs * of_wheel
 
@@ -377,17 +428,16 @@ def _odd_torques(drive: Drive, torque: float | None) -> Iterator[str]:
     if drive.duty:
         largest = max(range(len(drive.duty)), key=lambda entry: drive.duty[entry].torque)
         used.append((f"duty.{largest}.torque", drive.duty[largest].torque))
-    of_it = f"what this drive carries (some {rounded(carried / 1000.0)} N·m by the pressure of its flank)"
     beyond = False
     for path, value in used:
         if least_torque(drive) <= value < UNLOADED * carried:
             share = fraction(value / carried)
-            yield f'{_newton_metres(path, value)}, {share} of {of_it}; did you mean "{value:g} N m"?'
+            yield f'{_newton_metres(path, value)}, {share} of {_carried_words(carried)}; did you mean "{value:g} N m"?'
         elif value > OVERLOADED * carried:
             beyond = True
             yield (
-                f"{_newton_metres(path, value)}, {rounded(value / carried)} times {of_it}; a plain number is N·mm, did you "
-                f'mean "{value / 1e6:g} N m"?'
+                f"{_newton_metres(path, value)}, {_times_carried(value, carried)}; a plain number is N·mm, did you mean "
+                f'"{value / 1e6:g} N m"?'
             )
     if not beyond and not load.leaves_out_light_torque and load.light_torque < LIGHTEST * load.torque:
         yield (
@@ -519,6 +569,12 @@ def _newton_metres(path: str, value: float) -> str:
 def fraction(ratio: float) -> str:
     """Return a small ratio in words: "a thousandth", or "1/4200"."""
     return "a thousandth" if 0.8e-3 < ratio < 1.25e-3 else f"1/{rounded(1.0 / ratio)}"
+
+
+def _floored(value: float) -> float:
+    """A positive number to three figures, not above it."""
+    step = 10.0 ** (floor(log10(value)) - 2)
+    return floor(value / step) * step
 
 
 def rounded(value: float) -> str:

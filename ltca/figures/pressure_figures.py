@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from ltca.analysis.summary import LOADED_FRACTION
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, place_of_largest
 from ltca.contact.contact_kind import END_STRETCH
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -47,8 +47,7 @@ def hardest_roller(fields: xr.Dataset, case: str) -> tuple[str, dict[str, int]]:
     """Return where the roller pressure at mid-width is largest in a case: the side, and an indexer of the rest."""
     sides = [fields[f"roller_pressure_mid_{side}"].sel(case=case) for side in SIDES]
     side = int(np.argmax([float(mid.max()) for mid in sides]))
-    at = np.unravel_index(int(np.argmax(sides[side].values)), sides[side].shape)
-    place = {str(name): int(i) for name, i in zip(sides[side].dims, at, strict=True)}
+    place = dict(zip(map(str, sides[side].dims), place_of_largest(sides[side].values), strict=True))
     return SIDES[side], place
 
 

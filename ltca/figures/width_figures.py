@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from ltca.arrays import place_of_largest
 from ltca.figures.curve_panels import case_names, lines_of
 from ltca.figures.house_style import INK, shortened_label
 
@@ -38,7 +39,7 @@ def draw_along_width(figure: Figure, data: xr.Dataset, _: Any = None) -> None:
         told = []
         for case, line in enumerate(lines):
             loads = data[load].values[case]
-            position, pair = np.unravel_index(int(np.nanargmax(loads)), loads.shape)
+            position, pair = place_of_largest(loads)
             z = data[height].values[case]
             edges = np.append(z - 0.5 * (z[1] - z[0]), z[-1] + 0.5 * (z[1] - z[0]))
             for row, variable in enumerate((line_load, pressure)):
@@ -47,7 +48,7 @@ def draw_along_width(figure: Figure, data: xr.Dataset, _: Any = None) -> None:
                     values, edges, baseline=None, color=line.colour, linestyle=line.dashes, linewidth=1.4,
                     label=shortened_label(names[case], LETTERS),
                 )  # fmt: skip
-            told.append((int(pair), float(np.degrees(data["crank_angle"].values[position]))))
+            told.append((pair, float(np.degrees(data["crank_angle"].values[position]))))
         which = f"{name}, where it carries most"
         if len(told) == 1:
             which = f"{name} {told[0][0]} at {told[0][1]:.0f}°"

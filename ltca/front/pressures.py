@@ -9,7 +9,7 @@ import xarray as xr
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.pressure_fields import CONTACTS, FIELD_CELLS, is_loaded, loads_of, pressure_field
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, place_of_largest
 from ltca.contact.contact_kind import END_STRETCH
 from ltca.errors import DriveError, did_you_mean, shortened
 from ltca.front.arguments import angles_given, counted
@@ -69,10 +69,7 @@ def contact_pressure(
         given = {"disc": disc, "position": asked["position"], "crank": crank, "number": number}
         where = ", ".join(f"{name} {value}" for name, value in given.items() if value is not None)
         raise DriveError([f"contact = {contact!r}: carries nothing" + (f" at {where}" if where else "")])
-    place = [
-        int(axis.flat[index])
-        for axis, index in zip(chosen, np.unravel_index(np.argmax(carried), carried.shape), strict=True)
-    ]
+    place = [int(axis.flat[index]) for axis, index in zip(chosen, place_of_largest(carried), strict=True)]
     in_disc, at, on_crank, pair = place
     field = pressure_field(discs[in_disc], contact, at, on_crank * loads.shape[3] + pair, grid)
     part_name = {"pin": "pin", "hole": "hole"}.get(contact, "roller")

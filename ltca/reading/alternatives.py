@@ -7,16 +7,15 @@ from typing import Self
 
 from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
+from ltca.errors import Problem
 
 
-class Alternatives(str):
+class Alternatives(Problem):
     """A sentence that names first one of two fields, either of which resolves a contradiction.
 
     Attributes
     ----------
-    field, other : str
-        Paths of the field named first and of the other one.
-    other_first : str
+    other_first : Problem
         The sentence that names the other field first.
 
     Examples
@@ -24,32 +23,42 @@ class Alternatives(str):
     >>> from ltca.reading.drive_file import load_drive
     >>> drive = load_drive("paper").cases["CS-1"]
     >>> bounds = {"crank.eccentricity": "at most 3 mm", "pin_wheel.pin_circle_radius": "at least 80 mm"}
-    >>> problem = Alternatives.of(drive, bounds, ", or the flank has loops")
+    >>> problem = Alternatives.between(drive, bounds, "the flank has loops")
     >>> problem
     'crank.eccentricity = 4 mm: must be at most 3 mm or pin_wheel.pin_circle_radius at least 80 mm, or the flank has loops'
-    >>> problem.other, problem.other_first[:44]
-    ('pin_wheel.pin_circle_radius', 'pin_wheel.pin_circle_radius = 88 mm: must be')
+    >>> problem.path, problem.other, problem.other_first[:44]
+    ('crank.eccentricity', 'pin_wheel.pin_circle_radius', 'pin_wheel.pin_circle_radius = 88 mm: must be')
     """
 
-    field: str
-    other: str
-    other_first: str
+    other_first: Problem
+
+    @property
+    def other(self) -> str:
+        """Path of the field that is not named first."""
+        return self.other_first.path
 
     @classmethod
-    def of(cls, drive: Drive, bounds: dict[str, str], consequence: str) -> Self:
+    def between(cls, drive: Drive, bounds: dict[str, str], otherwise: str) -> Self:
         """Return the sentence on the lengths of a drive that have these bounds, two by path, and what is wrong beyond them."""
-        (field, bound), (other, other_bound) = bounds.items()
+        (first, bound), (other, other_bound) = bounds.items()
 
-        def sentence(first: str, its_bound: str, second: str, second_bound: str) -> str:
-            return f"{first} = {read_field(drive, first):g} mm: must be {its_bound} or {second} {second_bound}{consequence}"
+        def parts(path: str, its_bound: str, beside: str, bound_beside: str) -> tuple[str, str, str]:
+            return path, f"= {read_field(drive, path):g} mm", f"must be {its_bound} or {beside} {bound_beside}"
 
-        problem = cls(sentence(field, bound, other, other_bound))
-        problem.field, problem.other = field, other
-        problem.other_first = sentence(other, other_bound, field, bound)
+        problem = cls.of(*parts(first, bound, other, other_bound), otherwise=otherwise)
+        problem.other_first = Problem.of(*parts(other, other_bound, first, bound), otherwise=otherwise)
         return problem
 
     def reworded(self, reword: Callable[[str], str]) -> Self:
         """Return the sentence with other words, as of the paths of a single disc."""
-        problem = type(self)(reword(self))
-        problem.field, problem.other, problem.other_first = map(reword, (self.field, self.other, self.other_first))
+        problem = super().reworded(reword)
+        problem.other_first = self.other_first.reworded(reword)
         return problem
+
+
+def bounded(drive: Drive, bounds: dict[str, str], otherwise: str) -> Problem:
+    """Return the sentence on the length of a drive that has a bound, by path, or on either of two, and what is wrong beyond."""
+    if len(bounds) == 2:
+        return Alternatives.between(drive, bounds, otherwise)
+    ((path, bound),) = bounds.items()
+    return Problem.of(path, f"= {read_field(drive, path):g} mm", f"must be {bound}", otherwise=otherwise)

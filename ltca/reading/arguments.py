@@ -275,14 +275,20 @@ def count_argument(option: str, least: int, most: int) -> Callable[[str], int]:
     return read
 
 
-def refuse_impossible_torques(drives: Iterable[Drive], torque: float | None = None) -> None:
+def refuse_impossible_torques(
+    drives: Iterable[Drive], torque: float | None = None, *, duty: bool = True, in_parts: bool = False
+) -> None:
     """Refuse (`DriveError`) an output torque, N·mm, or those of the drives, that presses wheel pins beyond what is answered.
 
-    It comes before `tell_unit_mistakes`: a question about a value that is refused for the same reason is none.
+    With `duty` those of the entries of a duty are refused as well: of commands that solve them. A check answers `in_parts`, at
+    the part of a torque that is carried. It comes before `tell_unit_mistakes`: a question about a value that is refused for the
+    same reason is none.
     """
     from ltca.drive.unit_mistakes import impossible_torque
 
-    if told := next(filter(None, (impossible_torque(drive, torque) for drive in drives)), ""):
+    if told := next(
+        filter(None, (impossible_torque(drive, torque, duty=duty, in_parts=in_parts) for drive in drives)), ""
+    ):
         raise DriveError([told])
 
 

@@ -29,7 +29,7 @@ from ltca.drive.members.named_materials import LIKE, named_material, numbers_of
 from ltca.drive.members.preload import preload_table
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import BearingRow, Drive, Duty, ExternalLoad, MainBearing
-from ltca.errors import DriveError, shortened
+from ltca.errors import DriveError, Problem, shortened
 from ltca.reading.alternatives import Alternatives
 from ltca.reading.contradictions import explain_change
 from ltca.reading.physical_checks import find_contradictions
@@ -66,6 +66,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     arrays: dict[str, list[Any]] = {}
     whole = {}
     values = _without_names(_by_path(values))
+    only = next(iter(values)) if len(values) == 1 else None
     if "disc.planes" in values or "disc.gap" in values:  # one stands in the place of the other
         values = {"disc.planes": (), "disc.gap": 0.0, **values}
     for path, value in values.items():
@@ -99,20 +100,18 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
     changed: Drive = _replaced(drive, tree, "", problems)
     if own and not problems:
         changed = _with_own(changed, own, problems)
-    if not problems and check:
-        problems += [_named_by_change(problem, values) for problem in find_contradictions(changed)]
-        if len(values) == 1:
-            problems = explain_change(drive, changed, next(iter(values)), problems)
     if problems:
         raise DriveError(problems)
+    if check and (found := [_named_by_change(problem, values) for problem in find_contradictions(changed)]):
+        raise DriveError(found if only is None else explain_change(drive, changed, only, found))
     return changed
 
 
-def _named_by_change(problem: str, values: Mapping[str, Any]) -> str:
+def _named_by_change(problem: Problem, values: Mapping[str, Any]) -> Problem:
     """A contradiction that either of two fields resolves by the one that was changed, of both by the later change."""
     if not isinstance(problem, Alternatives):
         return problem
-    changed = [path for path in values if path in (problem.field, problem.other)]
+    changed = [path for path in values if path in (problem.path, problem.other)]
     return problem.other_first if changed[-1:] == [problem.other] else problem
 
 

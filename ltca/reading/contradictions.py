@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import exp, log
@@ -11,7 +10,7 @@ from typing import Any
 
 from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.reading.disc_checks import has_loops, hole_that_fits, largest_eccentricity, rounded_down
 from ltca.reading.physical_checks import is_sound
@@ -32,6 +31,9 @@ LARGE_OFFSET = 0.2
 # Logarithmic steps beyond the bound of one case that are tried for another.
 FARTHER = (0.0, 0.01, 0.1)
 COUNTS = ("pin_shaft.number_of_pins", "crank_bearing.number_of_rollers")
+# Whole numbers and lengths that are no likely cause, but may be what was changed.
+CHANGED_COUNTS = (*COUNTS, "pin_wheel.number_of_pins", "disc.number_of_discs")
+CHANGED = (*CAUSES, *CHANGED_COUNTS, "disc.gap")
 # Logarithms of the changes that are tried, from 1 % to a wrong prefix: steps of 1.12 up to five times, as fine as a hole
 # bounds the eccentricity; then of 1.22.
 SIZES = (0.01, 0.03, 0.06, *(0.113 * k for k in range(1, 15)), *(1.6 + 0.2 * k for k in range(40)))
@@ -50,11 +52,14 @@ class Cause:
         The field.
     value, bound : float
         Its value, and the nearest sound value, mm.
+    alone : bool
+        Whether it is the only sound value about there, of a number that others have to go with.
     """
 
     path: str
     value: float
     bound: float
+    alone: bool = False
 
     @property
     def distance(self) -> float:
@@ -64,7 +69,9 @@ class Cause:
     def bounded(self) -> str:
         """Return the bound in words, rounded to the sound side."""
         least = self.bound > self.value
-        if self.path in COUNTS:
+        if self.alone:
+            return f"{self.bound:g}"
+        if self.path in CHANGED_COUNTS:
             return f"{'at least' if least else 'at most'} {self.bound:g}"
         return f"at least {-rounded_down(-self.bound):g} mm" if least else f"at most {rounded_down(self.bound):g} mm"
 
@@ -75,12 +82,14 @@ class Cause:
         away = 1.0 if abs(self.bound) > abs(self.value) else -1.0
         return any(_sound_with(drive, self.path, self.bound * exp(away * step)) for step in FARTHER)
 
-    def named(self) -> str:
-        """Return field and value."""
-        return f"{self.path} = {self.value:g}" + ("" if self.path in COUNTS else " mm")
+    def problem(self, problems: Sequence[Problem], instead: str = "") -> Problem:
+        """Return the sentence on the field that stands for these contradictions; `instead` is another field with its bound."""
+        value = f"= {self.value:g}" + ("" if self.path in CHANGED_COUNTS else " mm")
+        reasons = "; ".join(dict.fromkeys(problem.reason(self.path) for problem in problems[:2]))
+        return Problem.of(self.path, value, f"must be {self.bounded()}{instead} for the rest of the drive: {reasons}")
 
 
-def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
+def explain_contradictions(drive: Drive, problems: list[Problem]) -> list[Problem]:
     """Return one sentence on the field that causes all contradictions of a drive, or the contradictions themselves if there
     is none.
 
@@ -89,7 +98,7 @@ def explain_contradictions(drive: Drive, problems: list[str]) -> list[str]:
     return find_cause(drive, problems)[0]
 
 
-def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
+def find_cause(drive: Drive, problems: list[Problem]) -> tuple[list[Problem], Mend]:
     """Return the explanation of contradictions (`explain_contradictions`), and whether its field resolves those of another
     drive.
 
@@ -97,7 +106,7 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     """
     if not problems:
         return [], lambda other: False
-    named = {problem.partition(" ")[0].rstrip(":") for problem in problems}
+    named = {problem.path for problem in problems}
     if not all(
         path in COUNTS or (path in CAUSES and _has(drive, path) and read_field(drive, path) > 0.0) for path in named
     ):
@@ -108,9 +117,9 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
         if getattr(getattr(drive, part), smaller) > getattr(getattr(drive, part), larger) and _sound_swapped(
             drive, part
         ):
-            values = [f"{name} = {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
-            told = f"{part}.{values[0]}: must be less than {values[1]}; the two seem to be swapped"
-            return [told], partial(_sound_swapped, part=part)
+            values = [f"= {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
+            said = f"must be less than {larger} {values[1]}; the two seem to be swapped"
+            return [Problem.of(f"{part}.{smaller}", values[0], said)], partial(_sound_swapped, part=part)
     if len(problems) == 1 and has_loops(drive) and _sound_without_loops(drive):
         return problems, _sound_without_loops
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)
@@ -130,27 +139,37 @@ def find_cause(drive: Drive, problems: list[str]) -> tuple[list[str], Mend]:
     instead = "".join(
         f" (or {cause.path} {cause.bounded()})" for cause in others[:1] if cause.distance <= 2.5 * first.distance
     )
-    reasons = "; ".join(dict.fromkeys(_consequence(problem, first.path) for problem in problems[:2]))
-    return [f"{first.named()}: must be {first.bounded()}{instead} for the rest of the drive: {reasons}"], first.mends
+    return [first.problem(problems, instead)], first.mends
 
 
-def explain_change(before: Drive, after: Drive, path: str, problems: list[str]) -> list[str]:
+def explain_change(before: Drive, after: Drive, path: str, problems: list[Problem]) -> list[Problem]:
     """Return one sentence on the only field that was changed, or the contradictions where they name it or its bound is not known.
 
     The bound is the last sound value on the way from a sound drive to the changed one: where the flank is undercut, another field
     than the changed one may be named, and be sound itself.
     """
-    named = all(problem.startswith((f"{path} ", f"{path}:")) for problem in problems)
-    if named or path not in CAUSES or not (_has(before, path) and _has(after, path) and is_sound(before)):
+    named = all(problem.is_about(path) for problem in problems)
+    if named or path not in CHANGED or not (_has(before, path) and _has(after, path) and is_sound(before)):
         return problems
+    if path in CHANGED_COUNTS:
+        return [_last_sound_count(before, after, path).problem(problems)]
     sound, wrong = float(read_field(before, path)), float(read_field(after, path))
     value = wrong
     for _ in range(20):
         middle = 0.5 * (sound + wrong)
         sound, wrong = (middle, wrong) if _sound_with(after, path, middle) else (sound, middle)
-    cause = Cause(path=path, value=value, bound=_without_overlap(after, path, sound))
-    reasons = "; ".join(dict.fromkeys(_consequence(problem, path) for problem in problems[:2]))
-    return [f"{cause.named()}: must be {cause.bounded()} for the rest of the drive: {reasons}"]
+    return [Cause(path=path, value=value, bound=_without_overlap(after, path, sound)).problem(problems)]
+
+
+def _last_sound_count(before: Drive, after: Drive, path: str) -> Cause:
+    """The last sound whole number on the way from that of a sound drive to a changed one."""
+    value, sound = int(read_field(after, path)), int(read_field(before, path))
+    wrong = value
+    while abs(wrong - sound) > 1:
+        middle = (sound + wrong) // 2
+        sound, wrong = (middle, wrong) if _sound_with(after, path, middle) else (sound, middle)
+    beyond = 2 * sound - wrong  # on the other side of it
+    return Cause(path=path, value=value, bound=sound, alone=not _sound_with(after, path, beyond))
 
 
 def _sound_swapped(drive: Drive, part: str) -> bool:
@@ -259,12 +278,3 @@ def _with(part: Any, names: list[str], value: float) -> Any:
     """A definition with one field, by its path, replaced."""
     name, *below = names
     return replace(part, **{name: _with(getattr(part, name), below, value) if below else value})
-
-
-def _consequence(problem: str, cause: str) -> str:
-    """The part of a contradiction that does not repeat its bound."""
-    if match := re.search(r", or (.+)$", problem):
-        return match.group(1)
-    head, _, tail = problem.partition(": ")
-    told = tail.partition("; must")[0]
-    return told if head.startswith(f"{cause} ") else f"{head}: {told}"

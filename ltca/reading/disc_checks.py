@@ -11,14 +11,13 @@ import numpy as np
 
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.deviations import BoreErrors
-from ltca.drive.fields import read_field
 from ltca.drive.members.width import LARGEST_SLOPE
 from ltca.drive.parts import Drive, LengthProfile, PlacementErrors, RollerErrors
-from ltca.errors import counted
+from ltca.errors import Problem, counted
 from ltca.geometry.flank import CurveFrame, FlankProfile, trochoid_curvature
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
-from ltca.reading.alternatives import Alternatives
+from ltca.reading.alternatives import bounded
 from ltca.reading.width_checks import find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
@@ -29,7 +28,7 @@ POINTS_PER_WAVE = 24
 """Points at which the flank is checked, per wave of the highest order."""
 
 
-def find_disc_problems(drive: Drive) -> list[str]:
+def find_disc_problems(drive: Drive) -> list[Problem]:
     """Contradictions of a drive of one disc."""
     problems = [problem for check in FIRST for problem in check(drive)]
     if problems:
@@ -40,25 +39,28 @@ def find_disc_problems(drive: Drive) -> list[str]:
     return problems + [problem for check in BESIDE for problem in check(drive)]
 
 
-def _tooth_numbers(drive: Drive) -> Iterator[str]:
+def _tooth_numbers(drive: Drive) -> Iterator[Problem]:
     pins, teeth = drive.pin_wheel.number_of_pins, drive.disc.number_of_teeth
     if pins - teeth != 1:
-        yield (
-            f"disc.number_of_teeth = {teeth}: must be {pins - 1}, one less than pin_wheel.number_of_pins = {pins} "
-            "(other tooth-number differences are not supported)"
+        yield Problem.of(
+            "disc.number_of_teeth",
+            f"= {teeth}",
+            f"must be {pins - 1}, one less than pin_wheel.number_of_pins = {pins} (other tooth-number "
+            "differences are not supported)",
         )
 
 
-def _flank(drive: Drive) -> Iterator[str]:
+def _flank(drive: Drive) -> Iterator[Problem]:
     wheel, disc, e = drive.pin_wheel, drive.disc, drive.crank.eccentricity
     if has_loops(drive):
         yield _loops(drive)
         return
     profile = FlankProfile.of_drive(drive)
     if profile.offset <= 0.0:
-        yield (
-            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be greater than "
-            f"{-wheel.pin_radius:g} mm (minus the pin radius)"
+        yield Problem.of(
+            "disc.equidistant_offset",
+            f"= {disc.equidistant_offset:g} mm",
+            f"must be greater than {-wheel.pin_radius:g} mm (minus the pin radius)",
         )
         return
     smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
@@ -67,19 +69,21 @@ def _flank(drive: Drive) -> Iterator[str]:
             f"less than {smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
             "convex side less the equidistant offset)"
         )
-        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, ", or the flank is undercut")
+        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, "the flank is undercut")
     if profile.root_radius <= 0.0:
-        yield (
-            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: leaves a root radius of "
-            f"{profile.root_radius:.6g} mm, must be greater than 0 mm"
+        yield Problem.of(
+            "pin_wheel.pin_circle_radius",
+            f"= {wheel.pin_circle_radius:g} mm",
+            f"leaves a root radius of {profile.root_radius:.6g} mm, must be greater than 0 mm",
         )
     overlap = drawn_interference(drive).pins
     bound = deviation_bound(drive)
     if overlap > bound + ROUNDING:
-        yield (
-            f"disc.equidistant_offset = {disc.equidistant_offset:g} mm: must be at least "
-            f"{disc.equidistant_offset + overlap:.6g} mm with this shifting offset, or disc and pins overlap by "
-            f"{overlap:.4g} mm, more than {bound:g} mm, {ELASTIC}"
+        yield Problem.of(
+            "disc.equidistant_offset",
+            f"= {disc.equidistant_offset:g} mm",
+            f"must be at least {disc.equidistant_offset + overlap:.6g} mm with this shifting offset",
+            otherwise=f"disc and pins overlap by {overlap:.4g} mm, more than {bound:g} mm, {ELASTIC}",
         )
 
 
@@ -133,16 +137,13 @@ def _crosses_itself(pin_circle_radius: float, shifted_radius: float, pitch_radiu
     return pitch_radius >= min(pin_circle_radius, shifted_radius)
 
 
-def _loops(drive: Drive) -> str:
+def _loops(drive: Drive) -> Problem:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
     most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
-    bound, consequence = f"at most {most:g} mm{_with_hole(drive, most)}", ", or the flank has loops"
-    if not isfinite(circle):
-        return f"crank.eccentricity = {drive.crank.eccentricity:g} mm: must be {bound}{consequence}"
-    other_bound = f"at least {-rounded_down(-circle):g} mm"
-    return Alternatives.of(
-        drive, {"crank.eccentricity": bound, "pin_wheel.pin_circle_radius": other_bound}, consequence
-    )
+    bounds, otherwise = {"crank.eccentricity": f"at most {most:g} mm{_with_hole(drive, most)}"}, "the flank has loops"
+    if isfinite(circle):
+        bounds["pin_wheel.pin_circle_radius"] = f"at least {-rounded_down(-circle):g} mm"
+    return bounded(drive, bounds, otherwise)
 
 
 def hole_that_fits(drive: Drive, eccentricity: float) -> float:
@@ -160,21 +161,20 @@ def _leads(drive: Drive, eccentricity: float) -> bool:
     return fits and shaft.hole_radius - shaft.pin_radius <= MOST_HOLE_PLAY * eccentricity
 
 
-def _or_eccentricity(drive: Drive, path: str, bound: str, largest: float, consequence: str) -> str:
+def _or_eccentricity(drive: Drive, path: str, bound: str, largest: float, otherwise: str) -> Problem:
     """Message about a length and its bound, or the largest eccentricity, unless that is zero or holes would have to change."""
-    most = rounded_down(largest)
-    if most <= 0.0 or not _leads(drive, most):
-        return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
-    return Alternatives.of(drive, {path: bound, "crank.eccentricity": f"at most {most:g} mm"}, consequence)
+    bounds, most = {path: bound}, rounded_down(largest)
+    if most > 0.0 and _leads(drive, most):
+        bounds["crank.eccentricity"] = f"at most {most:g} mm"
+    return bounded(drive, bounds, otherwise)
 
 
-def _or_eccentricity_and_hole(drive: Drive, path: str, bound: str, consequence: str) -> str:
+def _or_eccentricity_and_hole(drive: Drive, path: str, bound: str, otherwise: str) -> Problem:
     """Message about a length and its bound, or the eccentricity that mends it as well with the hole radius that goes with it."""
-    most = rounded_down(largest_eccentricity(drive))
-    if most <= 0.0:
-        return f"{path} = {read_field(drive, path):g} mm: must be {bound}{consequence}"
-    other = f"at most {most:g} mm{_with_hole(drive, most)}"
-    return Alternatives.of(drive, {path: bound, "crank.eccentricity": other}, consequence)
+    bounds, most = {path: bound}, rounded_down(largest_eccentricity(drive))
+    if most > 0.0:
+        bounds["crank.eccentricity"] = f"at most {most:g} mm{_with_hole(drive, most)}"
+    return bounded(drive, bounds, otherwise)
 
 
 def _with_hole(drive: Drive, eccentricity: float) -> str:
@@ -204,64 +204,78 @@ def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> f
     return 1.0 / largest if largest > 0.0 else float("inf")
 
 
-def _pins(drive: Drive) -> Iterator[str]:
+def _pins(drive: Drive) -> Iterator[Problem]:
     wheel = drive.pin_wheel
     room = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins)
     if wheel.pin_radius >= room:
-        yield (
-            f"pin_wheel.pin_radius = {wheel.pin_radius:g} mm: must be less than {room:.6g} mm, "
-            "or neighbouring pins overlap"
+        yield Problem.of(
+            "pin_wheel.pin_radius",
+            f"= {wheel.pin_radius:g} mm",
+            f"must be less than {room:.6g} mm",
+            otherwise="neighbouring pins overlap",
         )
     shaft = drive.pin_shaft
     if shaft is None:
         return
     room = shaft.pin_circle_radius * sin(pi / shaft.number_of_pins)
     if shaft.pin_radius >= room:
-        yield (
-            f"pin_shaft.pin_radius = {shaft.pin_radius:g} mm: must be less than {room:.6g} mm, "
-            "or neighbouring pins overlap"
+        yield Problem.of(
+            "pin_shaft.pin_radius",
+            f"= {shaft.pin_radius:g} mm",
+            f"must be less than {room:.6g} mm",
+            otherwise="neighbouring pins overlap",
         )
 
 
-def _bearing(drive: Drive) -> Iterator[str]:
+def _bearing(drive: Drive) -> Iterator[Problem]:
     bearing = drive.crank_bearing
     space = bearing.outer_race_radius - bearing.inner_race_radius
     if space <= 0.0:
         fitting = bearing.outer_race_radius - 2.0 * bearing.roller_radius
         bound = f"at most {fitting:g} mm" if fitting > 0.0 else f"less than {bearing.outer_race_radius:g} mm"
-        yield (
-            f"crank_bearing.inner_race_radius = {bearing.inner_race_radius:g} mm: must be {bound}, or the rollers have no "
-            f"room below the outer race (outer_race_radius = {bearing.outer_race_radius:g} mm)"
+        yield Problem.of(
+            "crank_bearing.inner_race_radius",
+            f"= {bearing.inner_race_radius:g} mm",
+            f"must be {bound}",
+            otherwise="the rollers have no room below the outer race (outer_race_radius = "
+            f"{bearing.outer_race_radius:g} mm)",
         )
     elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
-        yield (
-            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at most {0.5 * space:.6g} mm, or it overlaps "
-            f"the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}"
+        yield Problem.of(
+            "crank_bearing.roller_radius",
+            f"= {bearing.roller_radius:g} mm",
+            f"must be at most {0.5 * space:.6g} mm",
+            otherwise=f"the rollers overlap the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}",
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
-        yield (
-            f"crank_bearing.roller_radius = {bearing.roller_radius:g} mm: must be at least {0.45 * space:.6g} mm, "
-            "or the rollers are loose between the races (give clearance as clearance.bearing)"
+        yield Problem.of(
+            "crank_bearing.roller_radius",
+            f"= {bearing.roller_radius:g} mm",
+            f"must be at least {0.45 * space:.6g} mm",
+            otherwise="the rollers are loose between the races (give clearance as clearance.bearing)",
         )
     room = (bearing.inner_race_radius + bearing.roller_radius) * sin(pi / bearing.number_of_rollers)
     if bearing.roller_radius >= room:
-        yield (
-            f"crank_bearing.number_of_rollers = {bearing.number_of_rollers}: rollers of radius "
-            f"{bearing.roller_radius:g} mm overlap, their radius must be less than {room:.6g} mm"
+        yield Problem.of(
+            "crank_bearing.number_of_rollers",
+            f"= {bearing.number_of_rollers}",
+            f"rollers of radius {bearing.roller_radius:g} mm overlap, their radius must be less than {room:.6g} mm",
         )
     if drive.roller_length > drive.disc.thickness + ROUNDING:
-        yield (
-            f"crank_bearing.roller_length = {drive.roller_length:g} mm: must be at most "
-            f"{drive.disc.thickness:g} mm, the thickness of the disc, which it is when left out"
+        yield Problem.of(
+            "crank_bearing.roller_length",
+            f"= {drive.roller_length:g} mm",
+            f"must be at most {drive.disc.thickness:g} mm, the thickness of the disc, which it is when left out",
         )
     if drive.clearance.bearing > bearing.roller_radius:
-        yield (
-            f"clearance.bearing = {drive.clearance.bearing:g} mm: must be at most {bearing.roller_radius:g} mm, "
-            "the roller radius"
+        yield Problem.of(
+            "clearance.bearing",
+            f"= {drive.clearance.bearing:g} mm",
+            f"must be at most {bearing.roller_radius:g} mm, the roller radius",
         )
 
 
-def _holes(drive: Drive) -> Iterator[str]:
+def _holes(drive: Drive) -> Iterator[Problem]:
     shaft, e = drive.pin_shaft, drive.crank.eccentricity
     if shaft is None:
         return
@@ -277,30 +291,34 @@ def _holes(drive: Drive) -> Iterator[str]:
             f"at least {fitting:.6g} mm (pin_shaft.pin_radius + crank.eccentricity{play_of_sleeve}, and half the clearance "
             "unless clearance.pin_hole has it)"
         )
-        consequence = (
-            f", or it overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
+        otherwise = (
+            f"the hole overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
             "(and half the eccentricity at most)"
         )
         largest = shaft.hole_radius + shaft.seat_play - shaft.pin_radius
-        yield _or_eccentricity(drive, "pin_shaft.hole_radius", bound, largest, consequence)
+        yield _or_eccentricity(drive, "pin_shaft.hole_radius", bound, largest, otherwise)
     elif play > MOST_HOLE_PLAY * e:
-        yield (
-            f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: must be at most {shaft.pin_radius + MOST_HOLE_PLAY * e:g} mm, "
-            "pin radius plus 1.5 eccentricities, or the pins cannot lead the disc"
+        yield Problem.of(
+            "pin_shaft.hole_radius",
+            f"= {shaft.hole_radius:g} mm",
+            f"must be at most {shaft.pin_radius + MOST_HOLE_PLAY * e:g} mm, pin radius plus 1.5 eccentricities",
+            otherwise="the pins cannot lead the disc",
         )
     if drive.clearance.pin_hole > 0.5 * e:
-        yield (
-            f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be at most {0.5 * e:g} mm, "
-            "half the eccentricity"
+        yield Problem.of(
+            "clearance.pin_hole",
+            f"= {drive.clearance.pin_hole:g} mm",
+            f"must be at most {0.5 * e:g} mm, half the eccentricity",
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
 
-    def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> str:
+    def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> Problem:
         bound = shaft.hole_radius - excess
         if bound > fitting or play + shaft.seat_play < e - ROUNDING:
-            return f"pin_shaft.hole_radius = {shaft.hole_radius:g} mm: {trouble}; must be less than {max(bound, 0.0):.6g} mm"
-        return f"pin_shaft.pin_circle_radius = {circle:g} mm: {trouble}; must be {circle_bound}"
+            said = f"must be less than {max(bound, 0.0):.6g} mm"
+            return Problem.of("pin_shaft.hole_radius", f"= {shaft.hole_radius:g} mm", said, trouble=trouble)
+        return Problem.of("pin_shaft.pin_circle_radius", f"= {circle:g} mm", f"must be {circle_bound}", trouble=trouble)
 
     wall = circle - radius - drive.bore_radius
     if wall <= 0.0 and drive.crank.number == 1:
@@ -327,18 +345,21 @@ def _holes(drive: Drive) -> Iterator[str]:
     elif wall <= 0.0 and drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset > 0.0:
         # No circle has room for the holes; an offset that leaves no pin circle is reported with the flank.
         wheel = drive.pin_wheel
-        yield (
-            f"pin_wheel.pin_circle_radius = {wheel.pin_circle_radius:g} mm: holes cut through the root circle of the disc "
-            f"(radius {root:.6g} mm) by {-wall:.6g} mm; must be greater than {wheel.pin_circle_radius - wall:.6g} mm"
+        yield Problem.of(
+            "pin_wheel.pin_circle_radius",
+            f"= {wheel.pin_circle_radius:g} mm",
+            f"must be greater than {wheel.pin_circle_radius - wall:.6g} mm",
+            trouble=f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
         )
     if drive.bore_radius >= root > 0.0:
-        yield (
-            f"crank_bearing.outer_race_radius = {drive.crank_bearing.outer_race_radius:g} mm: must be less than "
-            f"{root:.6g} mm, the root radius of the disc"
+        yield Problem.of(
+            "crank_bearing.outer_race_radius",
+            f"= {drive.crank_bearing.outer_race_radius:g} mm",
+            f"must be less than {root:.6g} mm, the root radius of the disc",
         )
 
 
-def _length_profiles(drive: Drive) -> Iterator[str]:
+def _length_profiles(drive: Drive) -> Iterator[Problem]:
     bearing = drive.crank_bearing
     profiles: list[tuple[str, LengthProfile, float, float]] = [
         (
@@ -356,37 +377,44 @@ def _length_profiles(drive: Drive) -> Iterator[str]:
     ]
     for path, profile, length, radius in profiles:
         if profile.end_relief_length > 0.5 * length:
-            yield (
-                f"{path}.end_relief_length = {profile.end_relief_length:g} mm: must be at most "
-                f"{0.5 * length:g} mm, half the contact length"
+            yield Problem.of(
+                f"{path}.end_relief_length",
+                f"= {profile.end_relief_length:g} mm",
+                f"must be at most {0.5 * length:g} mm, half the contact length",
             )
         for name in ("crown_drop", "end_relief_depth"):
             if (drop := getattr(profile, name)) > 0.1 * radius:
-                yield f"{path}.{name} = {drop:g} mm: must be at most {0.1 * radius:g} mm, a tenth of the radius"
+                yield Problem.of(
+                    f"{path}.{name}", f"= {drop:g} mm", f"must be at most {0.1 * radius:g} mm, a tenth of the radius"
+                )
         if profile.logarithmic_factor > 100.0:
-            yield f"{path}.logarithmic_factor = {profile.logarithmic_factor:g}: must be at most 100"
+            yield Problem.of(f"{path}.logarithmic_factor", f"= {profile.logarithmic_factor:g}", "must be at most 100")
 
 
-def _bores(drive: Drive) -> Iterator[str]:
+def _bores(drive: Drive) -> Iterator[Problem]:
     """Problems of the walls around the bores of several cranks."""
     crank, radius = drive.crank, drive.bore_radius
     if crank.number == 1 or crank.circle_radius is None:
         return
     circle = crank.circle_radius
-    path = f"crank.circle_radius = {circle:g} mm"
+    path, value = "crank.circle_radius", f"= {circle:g} mm"
     sine = sin(pi / crank.number)
     wall = 2.0 * (circle * sine - radius)
     if wall <= 0.0:
-        yield (
-            f"{path}: neighbouring bores of {crank.number} cranks cut into each other by {-wall:.6g} mm; must be greater than "
-            f"{radius / sine:.6g} mm"
+        yield Problem.of(
+            path,
+            value,
+            f"must be greater than {radius / sine:.6g} mm",
+            trouble=f"neighbouring bores of {crank.number} cranks cut into each other by {-wall:.6g} mm",
         )
     root = FlankProfile.of_drive(drive).root_radius
     wall = root - circle - radius
     if wall <= 0.0:
-        yield (
-            f"{path}: bores cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm; must be less "
-            f"than {root - radius:.6g} mm"
+        yield Problem.of(
+            path,
+            value,
+            f"must be less than {root - radius:.6g} mm",
+            trouble=f"bores cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
         )
     shaft = drive.pin_shaft
     if shaft is None:
@@ -395,29 +423,33 @@ def _bores(drive: Drive) -> Iterator[str]:
     distance = float(np.min(np.abs(holes[:, None] - np.array(crank.places))))
     wall = distance - drive.hole_radius - radius
     if wall <= 0.0:
-        yield (
-            f"{path}: a bore and a hole (pin_shaft.pin_circle_radius = {shaft.pin_circle_radius:g} mm) cut into each other by "
-            f"{-wall:.6g} mm; other radii or crank.angle must leave a wall"
+        yield Problem.of(
+            path,
+            value,
+            f"a bore and a hole (pin_shaft.pin_circle_radius = {shaft.pin_circle_radius:g} mm) cut into each "
+            f"other by {-wall:.6g} mm; other radii or crank.angle must leave a wall",
         )
 
 
-def _friction(drive: Drive) -> Iterator[str]:
+def _friction(drive: Drive) -> Iterator[Problem]:
     """Problems of coefficients of absent joints, and of support bearings without radius."""
     friction, shaft = drive.friction, drive.pin_shaft
     if friction is None:
         return
     seats = {drive.pin_wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
     if friction.seat and seats == {"fixed"}:
-        yield (
-            f"friction.seat = {friction.seat:g}: must be left out, or 0, where no pin lies loose or carries a sleeve "
-            "(pin_wheel.seat, pin_shaft.seat)"
+        yield Problem.of(
+            "friction.seat",
+            f"= {friction.seat:g}",
+            "must be left out, or 0, where no pin lies loose or carries a sleeve (pin_wheel.seat, pin_shaft.seat)",
         )
     if friction.hole and shaft is None:
-        yield f"friction.hole = {friction.hole:g}: must be left out, or 0, without a pin shaft"
+        yield Problem.of("friction.hole", f"= {friction.hole:g}", "must be left out, or 0, without a pin shaft")
     if friction.support_bearing and not friction.support_bearing_radius:
-        yield (
-            f"friction.support_bearing_radius = 0 mm: must be given, greater than 0 mm, with friction.support_bearing = "
-            f"{friction.support_bearing:g}"
+        yield Problem.of(
+            "friction.support_bearing_radius",
+            "= 0 mm",
+            f"must be given, greater than 0 mm, with friction.support_bearing = {friction.support_bearing:g}",
         )
 
 
@@ -427,7 +459,7 @@ def deviation_bound(drive: Drive) -> float:
     return 0.1 * min(radii if drive.pin_shaft is None else [*radii, drive.pin_shaft.pin_radius])
 
 
-def find_deviation_problems(drive: Drive) -> Iterator[str]:
+def find_deviation_problems(drive: Drive) -> Iterator[Problem]:
     """Yield the problems of numbers and sizes of the deviations, one sentence each."""
     pins, holes = drive.pin_wheel.number_of_pins, drive.number_of_holes
     rollers = drive.crank_bearing.number_of_rollers
@@ -452,9 +484,11 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
     limit = min(bound, 0.5 * drive.crank.eccentricity)
     for path, value in lengths.items():
         if abs(value) > limit:
-            yield (
-                f"{path} = {value:g} mm: must be at most {limit:g} mm in size, a tenth of the smallest pin or "
-                "roller radius and half the eccentricity"
+            yield Problem.of(
+                path,
+                f"= {value:g} mm",
+                f"must be at most {limit:g} mm in size, a tenth of the smallest pin or roller radius and half the "
+                "eccentricity",
             )
     yield from find_lead_problems(drive.disc, bound)
     yield from _profile_errors(drive, bound)
@@ -462,25 +496,26 @@ def find_deviation_problems(drive: Drive) -> Iterator[str]:
 
 def part_errors(
     path: str, errors: PlacementErrors | RollerErrors | BoreErrors, count: int, things: str, bound: float
-) -> Iterator[str]:
+) -> Iterator[Problem]:
     """Problems of numbers and sizes of the errors of single pins, holes, rollers or bores."""
     for name in ("radial", "tangential", "diameter"):
         values = getattr(errors, name, ())
         if values and len(values) != count:
-            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(count, things)}"
+            yield Problem.of(f"{path}.{name}", f"has {counted(len(values), 'values')}", _needed(count, things))
         worst = max(values, key=abs, default=0.0)
         if abs(worst) > bound:
-            yield (
-                f"{path}.{name} holds {worst:g} mm: must be at most {bound:g} mm in size, "
-                "a tenth of the smallest pin or roller radius"
+            yield Problem.of(
+                f"{path}.{name}",
+                f"holds {worst:g} mm",
+                f"must be at most {bound:g} mm in size, a tenth of the smallest pin or roller radius",
             )
     for name in ("inclination_x", "inclination_y"):
         values = getattr(errors, name, ())
         if values and len(values) != count:
-            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(count, things)}"
+            yield Problem.of(f"{path}.{name}", f"has {counted(len(values), 'values')}", _needed(count, things))
         worst = max(values, key=abs, default=0.0)
         if abs(worst) > LARGEST_SLOPE:
-            yield f"{path}.{name} holds {worst:g} rad: {slope_bound()}"
+            yield Problem.of(f"{path}.{name}", f"holds {worst:g} rad", slope_bound())
 
 
 def _needed(count: int, things: str) -> str:
@@ -490,32 +525,37 @@ def _needed(count: int, things: str) -> str:
     return f"must have {count}, one for each of the {things}"
 
 
-def _profile_errors(drive: Drive, bound: float) -> Iterator[str]:
+def _profile_errors(drive: Drive, bound: float) -> Iterator[Problem]:
     errors = drive.disc.profile_errors
     path = "disc.profile_errors"
     if len(set(errors.orders)) != len(errors.orders):
-        yield f"{path}.orders: must name each order once"
+        yield Problem.of(f"{path}.orders", "", "must name each order once")
     for name in ("cosine", "sine"):
         values = getattr(errors, name)
         if values and len(values) != len(errors.orders):
-            yield f"{path}.{name} has {counted(len(values), 'values')}: {_needed(len(errors.orders), 'orders')}"
+            yield Problem.of(
+                f"{path}.{name}", f"has {counted(len(values), 'values')}", _needed(len(errors.orders), "orders")
+            )
     if len(errors.deviation) != len(errors.parameter):
-        yield (
-            f"{path}.deviation has {counted(len(errors.deviation), 'values')}: must have {len(errors.parameter)}, "
-            "one for each measured parameter"
+        yield Problem.of(
+            f"{path}.deviation",
+            f"has {counted(len(errors.deviation), 'values')}",
+            f"must have {len(errors.parameter)}, one for each measured parameter",
         )
     if errors.parameter:
         at = np.array(errors.parameter)
         if at.size < 3 or at[0] < 0.0 or at[-1] >= 2.0 * pi or not np.all(np.diff(at) > 0.0):
-            yield f"{path}.parameter: must be at least 3 angles ascending from 0 rad or more to less than 2π rad"
+            yield Problem.of(
+                f"{path}.parameter", "", "must be at least 3 angles ascending from 0 rad or more to less than 2π rad"
+            )
     size = sum(abs(value) for value in (*errors.cosine, *errors.sine)) + max(map(abs, errors.deviation), default=0.0)
     if size > bound:
-        yield (
-            f"{path} reaches {size:g} mm: must be at most {bound:g} mm, a tenth of the smallest pin or roller radius"
+        yield Problem.of(
+            path, f"reaches {size:g} mm", f"must be at most {bound:g} mm, a tenth of the smallest pin or roller radius"
         )
 
 
-def find_flank_problems(drive: Drive) -> Iterator[str]:
+def find_flank_problems(drive: Drive) -> Iterator[Problem]:
     """Yield the problem of a flank, designed or deviated, that folds or is more hollow than its pins are round."""
     profile = FlankProfile.of_drive(drive)
     # As designed the flank is hollowest in its roots: the curvature of the trochoid falls toward them as long as it
@@ -534,7 +574,11 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
         forward = (flank.tangent * frame.tangent.conjugate()).real
         if np.min(forward) <= 0.0:
             worst = float(places[np.argmin(forward)])
-            yield f"disc.profile_errors: the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order"
+            yield Problem.of(
+                "disc.profile_errors",
+                "",
+                f"the flank folds back on itself at θ = {worst:.4g} rad; reduce amplitude or order",
+            )
             return
         hollowest = np.argmin(curvature := flank.curvature)
         theta, actual = (
@@ -544,7 +588,7 @@ def find_flank_problems(drive: Drive) -> Iterator[str]:
     yield from _hollow(drive, designed, actual, theta)
 
 
-def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Iterator[str]:
+def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Iterator[Problem]:
     """A pin rounder than a hollow of the flank touches it at two points."""
     nominal = drive.pin_wheel.pin_radius
     growth = max(drive.pin_wheel.pin_errors.diameter, default=0.0)
@@ -552,14 +596,17 @@ def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Itera
     if actual > largest:
         return
     if designed <= nominal:
-        field = f"disc.equidistant_offset = {drive.disc.equidistant_offset:g} mm"
+        path, value = "disc.equidistant_offset", f"= {drive.disc.equidistant_offset:g} mm"
     elif actual <= nominal:
-        field = "disc.profile_errors"
+        path, value = "disc.profile_errors", ""
     else:
-        field = f"pin_wheel.pin_errors.diameter holds {growth:g} mm"
-    yield (
-        f"{field}: the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
-        f"{largest:g} mm, the radius of the largest pin, or pins touch it at two points at once"
+        path, value = "pin_wheel.pin_errors.diameter", f"holds {growth:g} mm"
+    yield Problem.of(
+        path,
+        value,
+        f"the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
+        f"{largest:g} mm, the radius of the largest pin",
+        otherwise="pins touch it at two points at once",
     )
 
 

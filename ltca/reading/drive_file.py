@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from importlib import resources
 from pathlib import Path
@@ -17,7 +17,7 @@ from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
-from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.errors import DriveError, Problem, did_you_mean, shortened
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.bearing_names import BearingNames
 from ltca.reading.changes import INSTEAD
@@ -219,7 +219,7 @@ def parse_drive(text: str, source: str = "drive") -> DriveFile:
 def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], int]:
     """Contradictions of the common part and of the cases, each once, and the number of cases that were not checked."""
     common = find_contradictions(base)
-    found: dict[str, list[str]] = {}
+    found: dict[str, list[Problem]] = {}
     wrong = 0
     for name, drive in drives.items():
         found[name] = common if drive == base else find_contradictions(drive)
@@ -230,13 +230,13 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
     suffering = {name for name, those in found.items() if those and mends(drives[name])}
     if suffering:  # one field of the common part causes them, whatever else differs from case to case
         everywhere = [] if suffering < set(found) else problems
-        told = {name: [] if everywhere else problems for name in suffering}
+        told: dict[str, list[Problem]] = {name: [] if everywhere else problems for name in suffering}
         problems = everywhere
     else:
         everywhere = [problem for problem in common if all(problem in those for those in found.values())]
         problems = problems if everywhere == common else explain_contradictions(base, everywhere)
         told = {}
-    explained: dict[tuple[str, ...], list[str]] = {}
+    explained: dict[tuple[Problem, ...], list[Problem]] = {}
     for name, those in found.items():
         if name in told:
             continue
@@ -245,10 +245,10 @@ def _contradictions(base: Drive, drives: dict[str, Drive]) -> tuple[list[str], i
         if own and own not in explained and len(explained) < MOST_EXPLAINED:
             explained[own] = explain_contradictions(drives[name], [*own])
         told[name] = explained.get(own, [*own])
-    return problems + _once(told, drives), len(drives) - len(found)
+    return [*problems, *_once(told, drives)], len(drives) - len(found)
 
 
-def _once(mistakes: dict[str, list[str]], drives: dict[str, Drive]) -> list[str]:
+def _once(mistakes: Mapping[str, Sequence[str]], drives: dict[str, Drive]) -> list[str]:
     """Mistakes of cases, each once with the names of its cases."""
     owners: dict[str, list[str]] = {}
     for name, problems in mistakes.items():

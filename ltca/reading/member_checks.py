@@ -18,8 +18,7 @@ from ltca.drive.mistakes import entry_words
 from ltca.drive.parts import BearingRow, CrankSupport, Drive, MainBearing, Material, Preload
 from ltca.drive.ring_shape import ring_mesh_problems, seat_radius
 from ltca.drive.units.table import range_of
-from ltca.errors import counted
-from ltca.reading.alternatives import Alternatives
+from ltca.errors import Problem, counted
 from ltca.reading.disc_checks import deviation_bound, part_errors
 from ltca.reading.width_checks import find_width_problems
 
@@ -39,46 +38,59 @@ LARGEST_BOLT_CIRCLE = 1.5
 """Bolt circle by the outer radius of the ring, with room for lugs."""
 
 
-def find_member_problems(drive: Drive) -> Iterator[str]:
+def find_member_problems(drive: Drive) -> Iterator[Problem]:
     """Yield the problems of cranks, supports, pins, duty and values per disc, one sentence each."""
     yield from find_width_problems(drive)
     yield from _installation(drive)
     yield from _per_disc(drive)
 
 
-def _installation(drive: Drive) -> Iterator[str]:
+def _installation(drive: Drive) -> Iterator[Problem]:
     """Problems of fields that belong to one crank or to several, and of supports, pins and duty."""
     crank, stage = drive.crank, drive.installation.first_stage_ratio
     if crank.number == 1:
         if drive.pin_shaft is None:
-            yield "pin_shaft: must be given with one crank (crank.number = 1), which alone cannot hold the disc against turning"
+            yield Problem.of(
+                "pin_shaft",
+                "",
+                "must be given with one crank (crank.number = 1), which alone cannot hold the disc against turning",
+            )
         if crank.circle_radius is not None:
-            yield (
-                f"crank.circle_radius = {crank.circle_radius:g} mm: must be left out with one crank (crank.number = 1), which "
-                "stands in the centre"
+            yield Problem.of(
+                "crank.circle_radius",
+                f"= {crank.circle_radius:g} mm",
+                "must be left out with one crank (crank.number = 1), which stands in the centre",
             )
         if crank.angle:
-            yield (
-                f"crank.angle = {crank.angle:g} rad: must be left out with one crank (crank.number = 1), which stands in the "
-                "centre"
+            yield Problem.of(
+                "crank.angle",
+                f"= {crank.angle:g} rad",
+                "must be left out with one crank (crank.number = 1), which stands in the centre",
             )
         if stage is not None:
-            yield (
-                f"installation.first_stage_ratio = {stage:g}: must be left out with one crank (crank.number = 1), which is "
-                "the input itself"
+            yield Problem.of(
+                "installation.first_stage_ratio",
+                f"= {stage:g}",
+                "must be left out with one crank (crank.number = 1), which is the input itself",
             )
     elif crank.circle_radius is None:
-        yield f"crank.circle_radius: must be given with several cranks (crank.number = {crank.number})"
+        yield Problem.of(
+            "crank.circle_radius", "", f"must be given with several cranks (crank.number = {crank.number})"
+        )
     if drive.pin_shaft is None:
         if drive.clearance.pin_hole:
-            yield f"clearance.pin_hole = {drive.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+            yield Problem.of(
+                "clearance.pin_hole", f"= {drive.clearance.pin_hole:g} mm", "must be left out without a pin shaft"
+            )
         for number, own in enumerate(drive.disc.of):
             if own.clearance is not None and own.clearance.pin_hole:
-                yield (
-                    f"disc.of.{number}.clearance.pin_hole = {own.clearance.pin_hole:g} mm: must be left out without a pin shaft"
+                yield Problem.of(
+                    f"disc.of.{number}.clearance.pin_hole",
+                    f"= {own.clearance.pin_hole:g} mm",
+                    "must be left out without a pin shaft",
                 )
         if drive.materials.shaft_pin != Material():
-            yield "materials.shaft_pin: must be left out without a pin shaft"
+            yield Problem.of("materials.shaft_pin", "", "must be left out without a pin shaft")
     parts = (
         *_first_stage(drive),
         *_crank_support(drive),
@@ -90,7 +102,7 @@ def _installation(drive: Drive) -> Iterator[str]:
     yield from (*parts, *find_pin_problems(drive), *_torques(drive), *_duty(drive), *_vibrations(drive))
 
 
-def _torques(drive: Drive) -> Iterator[str]:
+def _torques(drive: Drive) -> Iterator[Problem]:
     """Torques too small to be balanced."""
     if drive.tooth_number_difference == 0:
         return  # no ratio: a problem of its own
@@ -98,12 +110,13 @@ def _torques(drive: Drive) -> Iterator[str]:
     yield from problems
     # One left out follows from the torque, which is to blame for both.
     if not (problems and drive.load.leaves_out_light_torque):
-        yield from torque_problem(drive, drive.load.light_torque_name, drive.load.light_torque, zero=False)
+        name = drive.load.light_torque_name
+        yield from torque_problem(drive, "load.light_torque", drive.load.light_torque, zero=False, shown=name)
     for number, entry in enumerate(drive.duty):
         yield from torque_problem(drive, f"duty.{number}.torque", entry.torque, zero=False)
 
 
-def _ring(drive: Drive) -> Iterator[str]:
+def _ring(drive: Drive) -> Iterator[Problem]:
     """Problems of the ring that holds the wheel pins."""
     ring, wheel = drive.ring, drive.pin_wheel
     if ring is None:
@@ -111,33 +124,44 @@ def _ring(drive: Drive) -> Iterator[str]:
     inner, outer, circle = ring.inner_radius, ring.outer_radius, wheel.pin_circle_radius
     seat = seat_radius(wheel)
     if outer <= inner:
-        yield f"ring.outer_radius = {outer:g} mm: must be greater than ring.inner_radius = {inner:g} mm"
+        yield Problem.of(
+            "ring.outer_radius", f"= {outer:g} mm", f"must be greater than ring.inner_radius = {inner:g} mm"
+        )
         return
     if inner <= circle - seat:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be greater than {circle - seat:g} mm, where the wheel pins begin "
-            "(pin_wheel.pin_circle_radius less the radius of the seat): they would not stand out of the ring"
+        yield Problem.of(
+            "ring.inner_radius",
+            f"= {inner:g} mm",
+            f"must be greater than {circle - seat:g} mm, where the wheel pins begin "
+            "(pin_wheel.pin_circle_radius less the radius of the seat): they would not stand out of the ring",
         )
     if inner > circle + seat:
-        yield (
-            f"ring.inner_radius = {inner:g} mm: must be at most {circle + seat:g} mm, where the wheel pins end "
-            "(pin_wheel.pin_circle_radius plus the radius of the seat): they would not touch the ring"
+        yield Problem.of(
+            "ring.inner_radius",
+            f"= {inner:g} mm",
+            f"must be at most {circle + seat:g} mm, where the wheel pins end (pin_wheel.pin_circle_radius "
+            "plus the radius of the seat): they would not touch the ring",
         )
     if outer <= circle + seat:
-        yield (
-            f"ring.outer_radius = {outer:g} mm: must be greater than {circle + seat:g} mm, where the seats of the pins end "
-            "(pin_wheel.pin_circle_radius plus the radius of the seat)"
+        yield Problem.of(
+            "ring.outer_radius",
+            f"= {outer:g} mm",
+            f"must be greater than {circle + seat:g} mm, where the seats of the pins end "
+            "(pin_wheel.pin_circle_radius plus the radius of the seat)",
         )
     if ring.flange == "one-side":
-        yield (
-            'ring.flange = "one-side": must be "free" or "built-in": a flange on one side warps the ring, which no plane '
-            "model has"
+        yield Problem.of(
+            "ring.flange",
+            '= "one-side"',
+            'must be "free" or "built-in": a flange on one side warps the ring, which no plane model has',
         )
     own, slots = ring.material.thermal_expansion, drive.materials.wheel_seat.thermal_expansion
     if own is not None and slots is not None and own != slots:
-        yield (
-            f"ring.material.thermal_expansion = {own:g} 1/K: must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, "
-            "or leave one of them out: pin circle, slots and ring grow together"
+        yield Problem.of(
+            "ring.material.thermal_expansion",
+            f"= {own:g} 1/K",
+            f"must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, or leave one of them out: "
+            "pin circle, slots and ring grow together",
         )
     if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
         yield from ring_mesh_problems(drive)
@@ -145,88 +169,116 @@ def _ring(drive: Drive) -> Iterator[str]:
     if bolts is None:
         return
     if ring.flange == "built-in":
-        yield (
-            f'ring.bolts (number = {bolts.number}): must be left out with ring.flange = "built-in", where the housing holds the '
-            "outer face all around"
+        yield Problem.of(
+            "ring.bolts",
+            f"(number = {bolts.number})",
+            'must be left out with ring.flange = "built-in", where the housing holds the outer face all around',
         )
     if not inner <= bolts.circle_radius:
-        yield f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at least ring.inner_radius = {inner:g} mm"
+        yield Problem.of(
+            "ring.bolts.circle_radius",
+            f"= {bolts.circle_radius:g} mm",
+            f"must be at least ring.inner_radius = {inner:g} mm",
+        )
     if bolts.circle_radius > LARGEST_BOLT_CIRCLE * outer:
-        yield (
-            f"ring.bolts.circle_radius = {bolts.circle_radius:g} mm: must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, "
-            f"{LARGEST_BOLT_CIRCLE:g} times ring.outer_radius: bolts stand in the ring, or in lugs on it"
+        yield Problem.of(
+            "ring.bolts.circle_radius",
+            f"= {bolts.circle_radius:g} mm",
+            f"must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, {LARGEST_BOLT_CIRCLE:g} times "
+            "ring.outer_radius: bolts stand in the ring",
+            otherwise="in lugs on it",
         )
 
 
-def _first_stage(drive: Drive) -> Iterator[str]:
+def _first_stage(drive: Drive) -> Iterator[Problem]:
     """Problems of the teeth of the first stage, alone and beside cranks and the ratio that is given."""
     stage, crank, given = drive.first_stage, drive.crank, drive.installation.first_stage_ratio
     if stage is None:
         return
-    teeth = f"first_stage.planet_teeth = {stage.planet_teeth} by first_stage.sun_teeth = {stage.sun_teeth}"
+    teeth = "first_stage.planet_teeth", f"= {stage.planet_teeth} by first_stage.sun_teeth = {stage.sun_teeth}"
     if crank.number == 1:
-        yield "first_stage: must be left out with one crank (crank.number = 1), which is the input itself"
+        yield Problem.of(
+            "first_stage", "", "must be left out with one crank (crank.number = 1), which is the input itself"
+        )
         return
     if given is not None and abs(given - stage.ratio) > ROUNDING * stage.ratio:
-        yield f"installation.first_stage_ratio = {given:g}: must be {stage.ratio:.12g}, {teeth}, or be left out"
+        yield Problem.of(
+            "installation.first_stage_ratio",
+            f"= {given:g}",
+            f"must be {stage.ratio:.12g}, {' '.join(teeth)}, or be left out",
+        )
     yield from _planets_plane(drive, stage)
     if crank.support is not None and (crank.support.clearance or 0.0) > 0.0:
-        yield (
-            f"crank.support.clearance = {crank.support.clearance:g} mm: must be at most 0 beside first_stage: cranks that float "
-            "in their bearings leave the planets no place in the mesh; give crank.support.preload or a clearance of 0 or less, "
-            "or installation.first_stage_ratio in place of the teeth"
+        yield Problem.of(
+            "crank.support.clearance",
+            f"= {crank.support.clearance:g} mm",
+            "must be at most 0 beside first_stage: cranks that float in their bearings leave the planets no "
+            "place in the mesh; give crank.support.preload or a clearance of 0 or less, or "
+            "installation.first_stage_ratio in place of the teeth",
         )
     if crank.circle_radius is None:
         return
     distance, reference = crank.circle_radius, stage.reference_distance()
-    named = f"first_stage.module = {stage.module:g} mm" if stage.module is not None else teeth
+    cause = teeth if stage.module is None else ("first_stage.module", f"= {stage.module:g} mm")
     try:
         mesh = stage.mesh(distance)
     except ValueError:
         least = (reference or 0.0) * cos(stage.transverse_pressure_angle)
-        yield (
-            f"{named}: teeth do not reach each other, crank.circle_radius = {distance:g} mm must be at least "
-            f"{least:.6g} mm, the radii of the base circles of sun and planet together"
+        yield Problem.of(
+            *cause,
+            f"teeth do not reach each other, crank.circle_radius = {distance:g} mm must be at least "
+            f"{least:.6g} mm, the radii of the base circles of sun and planet together",
         )
         return
     if mesh.working_angle > MOST_WORKING_ANGLE:
-        yield (
-            f"{named}: the working pressure angle at crank.circle_radius = {distance:g} mm is "
-            f"{degrees(mesh.working_angle):.4g}°: must be at most {degrees(MOST_WORKING_ANGLE):g}°; "
-            f"the reference circles touch at {reference or distance:.6g} mm"
+        yield Problem.of(
+            *cause,
+            f"the working pressure angle at crank.circle_radius = {distance:g} mm is "
+            f"{degrees(mesh.working_angle):.4g}°: must be at most {degrees(MOST_WORKING_ANGLE):g}°; the "
+            f"reference circles touch at {reference or distance:.6g} mm",
         )
     apart = 2.0 * distance * sin(pi / crank.number)
     if 2.0 * mesh.pitch_radius >= apart:
-        yield (
-            f"{teeth}: planets of {2.0 * mesh.pitch_radius:.6g} mm cut into each other, neighbouring cranks stand {apart:.6g} mm "
-            "apart (crank.circle_radius, crank.number)"
+        yield Problem.of(
+            *teeth,
+            f"planets of {2.0 * mesh.pitch_radius:.6g} mm cut into each other, neighbouring cranks stand "
+            f"{apart:.6g} mm apart (crank.circle_radius, crank.number)",
         )
     if mesh.backlash_angle(stage.backlash) >= 0.5 * pi / stage.planet_teeth:
         most = 0.5 * pi / stage.planet_teeth * mesh.pitch_radius
-        yield (
-            f"first_stage.backlash = {stage.backlash:g} mm: must be less than {most:.4g} mm, a quarter of the pitch of the teeth"
+        yield Problem.of(
+            "first_stage.backlash",
+            f"= {stage.backlash:g} mm",
+            f"must be less than {most:.4g} mm, a quarter of the pitch of the teeth",
         )
     yield from _runout_of_teeth(stage, crank.number, distance)
 
 
-def _runout_of_teeth(stage: FirstStage, cranks: int, distance: float) -> Iterator[str]:
+def _runout_of_teeth(stage: FirstStage, cranks: int, distance: float) -> Iterator[Problem]:
     """Problems of the eccentricities of sun and planets, which must not jam the mesh."""
     runout, path = stage.planet_runout, "first_stage.planet_runout"
     for name, values in (("amount", runout.amount), ("angle", runout.angle)):
         if values and len(values) != cranks:
-            yield f"{path}.{name} has {counted(len(values), 'values')}: must have {cranks}, one for each of the planets"
+            yield Problem.of(
+                f"{path}.{name}",
+                f"has {counted(len(values), 'values')}",
+                f"must have {cranks}, one for each of the planets",
+            )
     closed = stage.closed_by_runout(distance)
     if closed > stage.backlash:
         given = {"first_stage.sun_runout.amount": stage.sun_runout.amount}
         given[f"{path}.amount"] = max(runout.amount, key=abs, default=0.0)
         named = ", ".join(f"{name} = {value:g} mm" for name, value in given.items() if value)
-        yield (
-            f"first_stage.backlash = {stage.backlash:g} mm: must be at least {closed:.4g} mm beside {named}: teeth that stand "
-            "off their axes close the backlash by 2 tan α_wt of both eccentricities, or they jam"
+        yield Problem.of(
+            "first_stage.backlash",
+            f"= {stage.backlash:g} mm",
+            f"must be at least {closed:.4g} mm beside {named}: teeth that stand off their axes close the "
+            "backlash by 2 tan α_wt of both eccentricities",
+            otherwise="they jam",
         )
 
 
-def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[str]:
+def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[Problem]:
     """Problems of the place of the planets along the axis, that where twisting cranks are held."""
     path, support = "first_stage.plane", drive.crank.support
     beside = "crank.support" if support is not None else "carrier.posts" if drive.crank_supports is not None else None
@@ -235,163 +287,207 @@ def _planets_plane(drive: Drive, stage: FirstStage) -> Iterator[str]:
         beside = own if drive.wheel_yields else "load.external"
     if stage.plane is None:
         if beside is not None:
-            yield f"{path}: must be given with {beside}, mm on the axis of disc.planes: the forces of the teeth act there"
+            yield Problem.of(
+                path,
+                "",
+                f"must be given with {beside}, mm on the axis of disc.planes: the forces of the teeth act there",
+            )
     elif support is not None and support.torsion and support.spline_plane not in (None, stage.plane):
-        yield (
-            f"{path} = {stage.plane:g} mm: must be crank.support.spline_plane = {support.spline_plane:g} mm, where the planets "
-            "are fixed on the cranks"
+        yield Problem.of(
+            path,
+            f"= {stage.plane:g} mm",
+            f"must be crank.support.spline_plane = {support.spline_plane:g} mm, where the planets are fixed "
+            "on the cranks",
         )
 
 
-def _duty(drive: Drive) -> Iterator[str]:
+def _duty(drive: Drive) -> Iterator[Problem]:
     total = fsum(entry.share for entry in drive.duty)
     if drive.duty and abs(total - 1.0) > SHARE_ROUNDING:
         named = ", ".join(f"duty.{number}.share = {entry.share:g}" for number, entry in enumerate(drive.duty))
-        yield f"{named}: must add up to 1, they add up to {total:.10g}"
+        yield Problem.of("duty", "", f"must add up to 1, they add up to {total:.10g}", shown=named)
     if drive.lubricant is not None and not drive.duty and drive.load.speed is None:
-        yield (
-            f"lubricant.viscosity = {drive.lubricant.viscosity:g} mm²/s: needs a speed, load.speed or those of [[duty]]; "
-            "without one no film can be computed"
+        yield Problem.of(
+            "lubricant.viscosity",
+            f"= {drive.lubricant.viscosity:g} mm²/s",
+            "needs a speed, load.speed or those of [[duty]]; without one no film can be computed",
         )
 
 
-def _vibrations(drive: Drive) -> Iterator[str]:
+def _vibrations(drive: Drive) -> Iterator[Problem]:
     """Problems of inertias and damping, which concern vibrations alone."""
     damping, given = drive.damping, drive.inertia
     if damping is not None and (damping.ratio is None) == (damping.loss_factor is None):
         told = "both are" if damping.ratio is not None else "neither is"
-        yield f"damping.ratio, damping.loss_factor: one of the two must be given, {told}"
+        both = "damping.ratio, damping.loss_factor"
+        yield Problem.of("damping", "", f"one of the two must be given, {told}", shown=both)
     if given is not None and given.output_mass is not None and not drive.wheel_yields:
-        yield (
-            f"inertia.output_mass = {given.output_mass:g} kg: must be left out without main_bearing (or "
-            "pin_wheel.support_stiffness), where the output turns about a fixed axis"
+        yield Problem.of(
+            "inertia.output_mass",
+            f"= {given.output_mass:g} kg",
+            "must be left out without main_bearing (or pin_wheel.support_stiffness), where the output turns "
+            "about a fixed axis",
         )
 
 
-def _crank_support(drive: Drive) -> Iterator[str]:
+def _crank_support(drive: Drive) -> Iterator[Problem]:
     support = drive.crank.support
     if support is None:
         own = drive.materials.crankshaft
         bare = replace(own, density=None)
         expands = drive.temperature is not None and own.thermal_expansion is not None
         if bare != Material() and not expands:
-            yield (
-                "materials.crankshaft: must be left out without crank.support, where cranks are rigid, but for its density and "
-                "for its thermal_expansion beside [temperature]"
+            yield Problem.of(
+                "materials.crankshaft",
+                "",
+                "must be left out without crank.support, where cranks are rigid, but for its density and for its "
+                "thermal_expansion beside [temperature]",
             )
         return
     yield from _crank_bearings(support, drive.crank.eccentricity)
     yield from _spline(support, drive.disc.disc_planes)
     start, end = support.positions
     if end <= start:
-        yield f"crank.support.positions holds {start:g} and {end:g} mm: must ascend"
+        yield Problem.of("crank.support.positions", f"holds {start:g} and {end:g} mm", "must ascend")
         return
     bore = 2.0 * drive.crank_bearing.inner_race_radius
     if support.diameter > bore:
-        yield (
-            f"crank.support.diameter = {support.diameter:g} mm: must be at most {bore:g} mm, the diameter of the inner race on it"
+        yield Problem.of(
+            "crank.support.diameter",
+            f"= {support.diameter:g} mm",
+            f"must be at most {bore:g} mm, the diameter of the inner race on it",
         )
     planes = drive.disc.disc_planes
     reach = end - start
     for plane in (min(planes), max(planes)):
         if not start - reach <= plane <= end + reach:
-            yield (
-                f"crank.support.positions holds {start:g} and {end:g} mm: a disc at {plane:g} mm (disc.planes) hangs over by "
-                f"more than their distance {reach:g} mm"
+            yield Problem.of(
+                "crank.support.positions",
+                f"holds {start:g} and {end:g} mm",
+                f"a disc at {plane:g} mm (disc.planes) hangs over by more than their distance {reach:g} mm",
             )
             return
 
 
-def _carrier(drive: Drive) -> Iterator[str]:
+def _carrier(drive: Drive) -> Iterator[Problem]:
     """Problems of the flanges of the carrier, of its posts and of their material."""
     carrier, shaft = drive.carrier, drive.pin_shaft
     posts = None if carrier is None else carrier.posts
     if posts is None and drive.materials.carrier != Material() and not _expands(drive, "carrier"):
-        yield (
-            "materials.carrier: must be left out without carrier.posts, where the flanges do not yield, but for its "
-            "thermal_expansion beside [temperature]"
+        yield Problem.of(
+            "materials.carrier",
+            "",
+            "must be left out without carrier.posts, where the flanges do not yield, but for its "
+            "thermal_expansion beside [temperature]",
         )
     if carrier is None:
         return
     if posts is None:
         if carrier.flange is not None:
             near, far = carrier.flange
-            yield (
-                f"carrier.flange = [{near:g}, {far:g}] mm: must be left out without carrier.posts, which tie the flanges and "
-                "bend them"
+            yield Problem.of(
+                "carrier.flange",
+                f"= [{near:g}, {far:g}] mm",
+                "must be left out without carrier.posts, which tie the flanges and bend them",
             )
         elif carrier.stiffness_torsion is None:
-            yield "carrier: is empty; give carrier.stiffness_torsion, carrier.posts or both, or leave the table out"
+            yield Problem.of(
+                "carrier", "", "is empty; give carrier.stiffness_torsion, carrier.posts or both, or leave the table out"
+            )
         return
     room = posts.radius * sin(pi / posts.number)
     if posts.size >= 2.0 * room:
-        yield (
-            f"carrier.posts.size = {posts.size:g} mm: must be less than {2.0 * room:.6g} mm, the distance of {posts.number} "
-            f"posts on a circle of radius {posts.radius:g} mm (carrier.posts.number, carrier.posts.radius)"
+        yield Problem.of(
+            "carrier.posts.size",
+            f"= {posts.size:g} mm",
+            f"must be less than {2.0 * room:.6g} mm, the distance of {posts.number} posts on a circle of "
+            f"radius {posts.radius:g} mm (carrier.posts.number, carrier.posts.radius)",
         )
     reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
     if posts.length is not None and posts.length < reach - ROUNDING * max(reach, 1.0):
-        yield (
-            f"carrier.posts.length = {posts.length:g} mm: must be at least {reach:.6g} mm, or the discs are not between the "
-            "flanges (disc.planes, disc.thickness)"
+        yield Problem.of(
+            "carrier.posts.length",
+            f"= {posts.length:g} mm",
+            f"must be at least {reach:.6g} mm",
+            otherwise="the discs are not between the flanges (disc.planes, disc.thickness)",
         )
     if shaft is None:
         return
     if shaft.beam is None:
         beams = 'pins between two flanges are beams (pin_shaft.beam with tip = "tied-clamped" or "tied-pinned")'
-        yield (
-            f"pin_shaft.beam: must be given beside carrier.posts; {beams}"
-            if shaft.stiffness is None
-            else f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside carrier.posts; {beams}"
-        )
+        if shaft.stiffness is None:
+            yield Problem.of("pin_shaft.beam", "", f"must be given beside carrier.posts; {beams}")
+        else:
+            value = f"= {shaft.stiffness:g} N/mm"
+            yield Problem.of("pin_shaft.stiffness", value, f"must be left out beside carrier.posts; {beams}")
     elif shaft.beam.tip == "free":
-        yield (
-            'pin_shaft.beam.tip = "free": must be "tied-clamped" or "tied-pinned" beside carrier.posts, whose far flange holds '
-            "the tips of the shaft pins"
+        yield Problem.of(
+            "pin_shaft.beam.tip",
+            '= "free"',
+            'must be "tied-clamped" or "tied-pinned" beside carrier.posts, whose far flange holds the tips '
+            "of the shaft pins",
         )
 
 
-def _crank_bearings(support: CrankSupport, eccentricity: float) -> Iterator[str]:
+def _crank_bearings(support: CrankSupport, eccentricity: float) -> Iterator[Problem]:
     """Problems of the two bearings of a crank: how their stiffness, clearance and preload are given."""
     path = "crank.support"
     tapered = {"contact_angle": support.contact_angle, "load_constant": support.load_constant}
     if not any(value is not None for value in tapered.values()):
         if len(support.stiffness) != 2:
-            yield f"{path}.stiffness has {counted(len(support.stiffness), 'values')}: must have 2, one for each bearing"
+            yield Problem.of(
+                f"{path}.stiffness",
+                f"has {counted(len(support.stiffness), 'values')}",
+                "must have 2, one for each bearing",
+            )
     else:
         if support.stiffness:
-            yield (
-                f"{path}.stiffness: must be left out beside {path}.contact_angle and {path}.load_constant, from which the "
-                "stiffness of tapered rollers follows"
+            yield Problem.of(
+                f"{path}.stiffness",
+                "",
+                f"must be left out beside {path}.contact_angle and {path}.load_constant, from which the stiffness "
+                "of tapered rollers follows",
             )
         for name, value in tapered.items():
             if value is None:
-                yield f"{path}.{name}: must be given with tapered rollers, beside {path}.contact_angle and {path}.load_constant"
+                yield Problem.of(
+                    f"{path}.{name}",
+                    "",
+                    f"must be given with tapered rollers, beside {path}.contact_angle and {path}.load_constant",
+                )
         if support.preload is None:
-            yield f"{path}.preload: must be given with {path}.load_constant, whose stiffness is that at a preload"
+            yield Problem.of(
+                f"{path}.preload", "", f"must be given with {path}.load_constant, whose stiffness is that at a preload"
+            )
         if support.contact_angle is not None:
             yield from _contact_angle(f"{path}.contact_angle", support.contact_angle)
     yield from _loose_or_tight(path, support.clearance, support.preload, eccentricity)
 
 
-def _spline(support: CrankSupport, planes: tuple[float, ...]) -> Iterator[str]:
+def _spline(support: CrankSupport, planes: tuple[float, ...]) -> Iterator[Problem]:
     """Problems of the place where a twisting crank is held."""
     path, place = "crank.support.spline_plane", support.spline_plane
     if not support.torsion:
         if place is not None:
-            yield f"{path} = {place:g} mm: must be left out without crank.support.torsion = true"
+            yield Problem.of(path, f"= {place:g} mm", "must be left out without crank.support.torsion = true")
     elif place is None:
-        yield f"{path}: must be given with crank.support.torsion = true: the shaft twists from there"
+        yield Problem.of(path, "", "must be given with crank.support.torsion = true: the shaft twists from there")
     elif place in planes:
-        yield f"{path} = {place:g} mm: must be another place than that of a disc (disc.planes), whose eccentric is no spline"
+        yield Problem.of(
+            path,
+            f"= {place:g} mm",
+            "must be another place than that of a disc (disc.planes), whose eccentric is no spline",
+        )
 
 
-def _contact_angle(path: str, angle: float) -> Iterator[str]:
+def _contact_angle(path: str, angle: float) -> Iterator[Problem]:
     if not 0.0 < angle < 0.5 * pi:
-        yield f"{path} = {angle:g} rad: must be greater than 0 and less than {0.5 * pi:.6g} rad"
+        yield Problem.of(path, f"= {angle:g} rad", f"must be greater than 0 and less than {0.5 * pi:.6g} rad")
 
 
-def _loose_or_tight(path: str, clearance: float | None, preload: Preload | None, eccentricity: float) -> Iterator[str]:
+def _loose_or_tight(
+    path: str, clearance: float | None, preload: Preload | None, eccentricity: float
+) -> Iterator[Problem]:
     """Problems of clearance and preload of one bearing."""
     most = 0.5 * eccentricity
     for name, value in (
@@ -399,40 +495,54 @@ def _loose_or_tight(path: str, clearance: float | None, preload: Preload | None,
         ("preload.displacement", None if preload is None else preload.displacement),
     ):
         if value is not None and abs(value) > most:
-            yield f"{path}.{name} = {value:g} mm: must be at most {most:g} mm in size, half the eccentricity"
+            yield Problem.of(
+                f"{path}.{name}", f"= {value:g} mm", f"must be at most {most:g} mm in size, half the eccentricity"
+            )
     if preload is None:
         return
     if clearance is not None:
-        yield f"{path}.clearance = {clearance:g} mm: must be left out beside {path}.preload: a bearing is loose or tight"
+        yield Problem.of(
+            f"{path}.clearance",
+            f"= {clearance:g} mm",
+            f"must be left out beside {path}.preload: a bearing is loose or tight",
+        )
     yield from _one_preload(f"{path}.preload", preload)
 
 
-def _one_preload(path: str, preload: Preload) -> Iterator[str]:
+def _one_preload(path: str, preload: Preload) -> Iterator[Problem]:
     if (preload.force is None) == (preload.displacement is None):
-        yield f"{path}: must be either a force (N) or a displacement (mm)"
+        yield Problem.of(path, "", "must be either a force (N) or a displacement (mm)")
 
 
-def _main_bearing(drive: Drive) -> Iterator[str]:
+def _main_bearing(drive: Drive) -> Iterator[Problem]:
     bearing, alias = drive.main_bearing, drive.pin_wheel.support_stiffness
     if bearing is None:
         return
     path, radial = "main_bearing", bearing.radial_stiffness
     if alias is not None and radial is not None:
-        yield (
-            f"{path}.radial_stiffness = {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm: are two names of one "
-            "stiffness; give one of them"
+        yield Problem.of(
+            f"{path}.radial_stiffness",
+            f"= {radial:g} N/mm and pin_wheel.support_stiffness = {alias:g} N/mm",
+            "are two names of one stiffness; give one of them",
         )
     if bearing.tilt_stiffness is not None and bearing.bearings:
-        yield (
-            f"{path}.tilt_stiffness = {bearing.tilt_stiffness:g} N·mm/rad: must be left out beside {path}.bearings, whose "
-            "pressure centres bring it"
+        yield Problem.of(
+            f"{path}.tilt_stiffness",
+            f"= {bearing.tilt_stiffness:g} N·mm/rad",
+            f"must be left out beside {path}.bearings, whose pressure centres bring it",
         )
     yield from _loose_or_tight(path, bearing.clearance, bearing.preload, drive.crank.eccentricity)
     if not bearing.bearings:
         if radial is None and alias is None:
-            yield f"{path}.radial_stiffness: must be given, or {path}.bearings; left out with the whole table it is rigid"
+            yield Problem.of(
+                f"{path}.radial_stiffness",
+                "",
+                f"must be given, or {path}.bearings; left out with the whole table it is rigid",
+            )
         if bearing.arrangement != "O":
-            yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without {path}.bearings'
+            yield Problem.of(
+                f"{path}.arrangement", f'= "{bearing.arrangement}"', f"must be left out without {path}.bearings"
+            )
         return
     for name, value in (
         ("main_bearing.radial_stiffness", radial),
@@ -440,30 +550,41 @@ def _main_bearing(drive: Drive) -> Iterator[str]:
         ("main_bearing.axial_stiffness", bearing.axial_stiffness),
     ):
         if value is not None:
-            yield f"{name} = {value:g} N/mm: must be left out beside {path}.bearings, from which it follows"
-    used, wrong = False, list[str]()
+            yield Problem.of(
+                name, f"= {value:g} N/mm", f"must be left out beside {path}.bearings, from which it follows"
+            )
+    used, wrong = False, list[Problem]()
     for number, row in enumerate(bearing.bearings):
         wrong += _bearing_row(f"{path}.bearings.{number}", row, bearing)
         used = used or (bool(row.contact_angle) and row.preload is None)
     yield from wrong or _row_preloads(bearing)
     if bearing.preload is not None and not used:
-        yield f"{path}.preload: must be left out where no row of {path}.bearings takes it (contact_angle, no preload of its own)"
+        yield Problem.of(
+            f"{path}.preload",
+            "",
+            f"must be left out where no row of {path}.bearings takes it (contact_angle, no preload of its own)",
+        )
     placed = [row for row in bearing.bearings if row.contact_angle]
     if len(placed) > 2:
-        yield (
-            f"{path}.bearings has {len(placed)} rows with contact angles: must have at most 2, which face each other by "
-            f"{path}.arrangement; rows that face alike are one row of their load constants together"
+        yield Problem.of(
+            f"{path}.bearings",
+            f"has {len(placed)} rows with contact angles",
+            f"must have at most 2, which face each other by {path}.arrangement; rows that face alike are one "
+            "row of their load constants together",
         )
     elif len(placed) > 1 and len({row.plane for row in placed}) == 1:
-        yield (
-            f"{path}.bearings: plane = {placed[0].plane:g} mm of all rows: rows with contact angles must stand in different "
-            "planes"
+        yield Problem.of(
+            f"{path}.bearings",
+            "",
+            f"plane = {placed[0].plane:g} mm of all rows: rows with contact angles must stand in different planes",
         )
     if bearing.arrangement != "O" and len(placed) < 2:
-        yield f'{path}.arrangement = "{bearing.arrangement}": must be left out without two rows with contact angles'
+        yield Problem.of(
+            f"{path}.arrangement", f'= "{bearing.arrangement}"', "must be left out without two rows with contact angles"
+        )
 
 
-def _row_preloads(bearing: MainBearing) -> Iterator[str]:
+def _row_preloads(bearing: MainBearing) -> Iterator[Problem]:
     """Problems of axial preloads that are in no balance, of rows that are sound each by itself."""
     rows, forces = [], []
     for number, row in enumerate(bearing.bearings):
@@ -484,59 +605,80 @@ def _row_preloads(bearing: MainBearing) -> Iterator[str]:
     if len(rows) == 1 and forces[0]:
         ((path, own),) = rows
         given = "main_bearing.preload" if own is None else f"{path}.preload"
-        yield (
-            f"{given}: must be left out with one row with a contact angle ({path}), which has none to "
-            "press against; give axial_stiffness in place of load_constant"
+        yield Problem.of(
+            given,
+            "",
+            f"must be left out with one row with a contact angle ({path}), which has none to press against; "
+            "give axial_stiffness in place of load_constant",
         )
     if len(rows) != 2:
         return
     ((first, _), (second, _)), (one, other) = rows, forces
     if not all(forces) and any(forces):
         given, left_out = (first, second) if one else (second, first)
-        yield f"{left_out}.preload: must be given beside {given}.preload: rows that face each other press with one force"
+        yield Problem.of(
+            f"{left_out}.preload",
+            "",
+            f"must be given beside {given}.preload: rows that face each other press with one force",
+        )
     elif abs(one - other) > UNBALANCED * max(one, other):
-        yield (
-            f"{first} and {second}: axial preloads of {one:.4g} and {other:.4g} N must be equal to {100.0 * UNBALANCED:g} %: "
-            "rows that face each other press with one force; main_bearing.preload is that of both"
+        yield Problem.of(
+            first,
+            f"and {second}",
+            f"axial preloads of {one:.4g} and {other:.4g} N must be equal to {100.0 * UNBALANCED:g} %: rows that face each "
+            "other press with one force; main_bearing.preload is that of both",
         )
 
 
-def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[str]:
+def _bearing_row(path: str, row: BearingRow, bearing: MainBearing) -> Iterator[Problem]:
     """Problems of one row of the main bearing."""
     preload = row.preload or bearing.preload
     if row.preload is not None:
         yield from _one_preload(f"{path}.preload", row.preload)
         if bearing.clearance is not None:
-            yield f"{path}.preload: must be left out beside main_bearing.clearance: a bearing is loose or tight"
+            yield Problem.of(
+                f"{path}.preload", "", "must be left out beside main_bearing.clearance: a bearing is loose or tight"
+            )
     if row.contact_angle == 0.0:
         if row.kind in ("angular-contact ball", "tapered roller"):
-            yield f'{path}.contact_angle: must be given with kind = "{row.kind}"'
+            yield Problem.of(f"{path}.contact_angle", "", f'must be given with kind = "{row.kind}"')
             return
         if row.radial_stiffness is None:
-            yield f"{path}.radial_stiffness: must be given without a contact angle"
+            yield Problem.of(f"{path}.radial_stiffness", "", "must be given without a contact angle")
         for name in ("axial_stiffness", "load_constant", "pitch_radius"):
             value = getattr(row, name)
             if value is not None:
-                yield f"{path}.{name} = {value:g}: must be left out without a contact angle"
+                yield Problem.of(f"{path}.{name}", f"= {value:g}", "must be left out without a contact angle")
         if row.preload is not None:
-            yield f"{path}.preload: must be left out without a contact angle; give main_bearing.clearance, negative where tight"
+            yield Problem.of(
+                f"{path}.preload",
+                "",
+                "must be left out without a contact angle; give main_bearing.clearance, negative where tight",
+            )
         return
     if row.kind == "cylindrical":
-        yield f'{path}.contact_angle = {row.contact_angle:g} rad: must be left out with kind = "cylindrical"'
+        yield Problem.of(
+            f"{path}.contact_angle", f"= {row.contact_angle:g} rad", 'must be left out with kind = "cylindrical"'
+        )
         return
     yield from _contact_angle(f"{path}.contact_angle", row.contact_angle)
     if row.radial_stiffness is not None:
-        yield (
-            f"{path}.radial_stiffness = {row.radial_stiffness:g} N/mm: must be left out with a contact angle, from which it "
-            "follows"
+        yield Problem.of(
+            f"{path}.radial_stiffness",
+            f"= {row.radial_stiffness:g} N/mm",
+            "must be left out with a contact angle, from which it follows",
         )
     if (row.axial_stiffness is None) == (row.load_constant is None):
-        yield f"{path}: must have either axial_stiffness or load_constant"
+        yield Problem.of(path, "", "must have either axial_stiffness or load_constant")
     if row.load_constant is not None and preload is None:
-        yield f"{path}.load_constant = {row.load_constant:g} N/mmⁿ: needs a preload, {path}.preload or main_bearing.preload"
+        yield Problem.of(
+            f"{path}.load_constant",
+            f"= {row.load_constant:g} N/mmⁿ",
+            f"needs a preload, {path}.preload or main_bearing.preload",
+        )
 
 
-def _per_disc(drive: Drive) -> Iterator[str]:
+def _per_disc(drive: Drive) -> Iterator[Problem]:
     """Yield the problems of values per disc, which need an entry for every disc or none at all, one sentence each."""
     discs = drive.disc.number_of_discs
     for path, entries in (
@@ -546,15 +688,24 @@ def _per_disc(drive: Drive) -> Iterator[str]:
         ("crank.of", drive.crank.of if all(entry.disc is None for entry in drive.crank.of) else ()),
     ):
         if entries and len(entries) != discs:
-            yield f"{path} has {counted(len(entries), 'entries')}: must have {discs}, one for each disc (disc.number_of_discs)"
+            yield Problem.of(
+                path,
+                f"has {counted(len(entries), 'entries')}",
+                f"must have {discs}, one for each disc (disc.number_of_discs)",
+            )
     planes, thickness = sorted(drive.disc.planes), drive.disc.thickness
     if planes and drive.disc.gap:
-        yield f"disc.gap = {drive.disc.gap:g} mm: must be left out beside disc.planes, which say where the discs stand"
+        yield Problem.of(
+            "disc.gap",
+            f"= {drive.disc.gap:g} mm",
+            "must be left out beside disc.planes, which say where the discs stand",
+        )
     for before, after in pairwise(planes):
         if after - before < thickness * (1.0 - 1e-9):
-            yield (
-                f"disc.planes holds {before:g} and {after:g} mm: must be at least {thickness:g} mm apart, the thickness of "
-                "a disc"
+            yield Problem.of(
+                "disc.planes",
+                f"holds {before:g} and {after:g} mm",
+                f"must be at least {thickness:g} mm apart, the thickness of a disc",
             )
     # One disc may be one of several checked alone; where shafts or pins bend, the axis has its zero at supports and beams.
     shaft = drive.pin_shaft
@@ -562,46 +713,62 @@ def _per_disc(drive: Drive) -> Iterator[str]:
     placed = (drive.crank.support, drive.pin_wheel.beam, None if shaft is None else shaft.beam, posts)
     if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
         mean = sum(planes) / len(planes)
-        yield f"disc.planes has the mean {mean:g} mm: must be 0 mm, planes are centred on 0 where nothing bends"
+        yield Problem.of(
+            "disc.planes", f"has the mean {mean:g} mm", "must be 0 mm, planes are centred on 0 where nothing bends"
+        )
     yield from _eccentric_problems(drive)
     bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
     for number, entry in enumerate(drive.crank.of):
         if abs(entry.phase_error) > bound:
-            yield (
-                f"{_entry(drive, number)}: phase_error = {entry.phase_error:g} rad: must be at most {bound:.4g} rad in size: the "
-                "eccentric's centre moves by a tenth of the smallest pin or roller radius, or by half the eccentricity"
+            yield Problem.of(
+                f"crank.of.{number}.phase_error",
+                f"= {entry.phase_error:g} rad",
+                f"must be at most {bound:.4g} rad in size: the eccentric's centre moves by a tenth of the smallest pin or roller "
+                "radius, or by half the eccentricity",
+                shown=f"{_entry(drive, number)}: phase_error",
             )
 
 
-def _eccentric_problems(drive: Drive) -> Iterator[str]:
+def _eccentric_problems(drive: Drive) -> Iterator[Problem]:
     """Problems of the index keys of ``crank.of``, and of the errors of bores."""
     discs, cranks, entries = drive.disc.number_of_discs, drive.crank.number, drive.crank.of
     told = [entry.disc is not None for entry in entries]
     if entries and not all(told) and (any(told) or cranks > 1):
         number = told.index(False)
-        yield (
-            f"{entry_words(number)}: disc is left out: every entry must give its disc"
-            + (f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none")
+        further = f" and its crank (crank.number = {cranks})" if cranks > 1 else ", or none"
+        yield Problem.of(
+            f"crank.of.{number}.disc",
+            "is left out",
+            f"every entry must give its disc{further}",
+            shown=f"{entry_words(number)}: disc",
         )
         return
     seen = set()
     for number, entry in enumerate(entries):
         if entry.disc is not None and entry.disc >= discs:
-            yield (
-                f"{entry_words(number)}: disc = {entry.disc}: must be less than {discs}, the number of discs, which count "
-                "from 0"
+            yield Problem.of(
+                f"crank.of.{number}.disc",
+                f"= {entry.disc}",
+                f"must be less than {discs}, the number of discs, which count from 0",
+                shown=f"{entry_words(number)}: disc",
             )
         if entry.crank is not None and entry.crank >= cranks:
-            yield (
-                f"{entry_words(number)}: crank = {entry.crank}: must be less than {cranks}, crank.number; cranks count from 0"
+            yield Problem.of(
+                f"crank.of.{number}.crank",
+                f"= {entry.crank}",
+                f"must be less than {cranks}, crank.number; cranks count from 0",
+                shown=f"{entry_words(number)}: crank",
             )
         if entry.crank is None and cranks > 1:
-            yield (
-                f"{entry_words(number)}: crank is left out: every entry must give its disc and its crank (crank.number = "
-                f"{cranks})"
+            yield Problem.of(
+                f"crank.of.{number}.crank",
+                "is left out",
+                f"every entry must give its disc and its crank (crank.number = {cranks})",
+                shown=f"{entry_words(number)}: crank",
             )
         if entry.disc is not None and (place := (entry.disc, entry.crank or 0)) in seen:
-            yield f"{entry_words(number)}: disc {place[0]} on crank {place[1]} has an entry already"
+            said = f"disc {place[0]} on crank {place[1]} has an entry already"
+            yield Problem.of(f"crank.of.{number}", "", said, shown=entry_words(number))
         seen.add((number if entry.disc is None else entry.disc, entry.crank or 0))
     bound = deviation_bound(drive)
     for number, own in enumerate(drive.disc.of):
@@ -609,18 +776,21 @@ def _eccentric_problems(drive: Drive) -> Iterator[str]:
             continue
         if cranks == 1:
             for name in ("radial", "tangential"):
-                yield (
-                    f"disc.of.{number}.bore_errors.{name}: must be left out with one crank, whose bore is the centre of the "
-                    "disc (give disc.runout)"
+                yield Problem.of(
+                    f"disc.of.{number}.bore_errors.{name}",
+                    "",
+                    "must be left out with one crank, whose bore is the centre of the disc (give disc.runout)",
                 )
             continue
         yield from part_errors(f"disc.of.{number}.bore_errors", own.bore_errors, cranks, "bores", bound)
     size = min(bound, 0.5 * drive.crank.eccentricity)
     for number, entry in enumerate(entries):
         if cranks > 1 and abs(entry.eccentricity_error or 0.0) > size:
-            yield (
-                f"{_entry(drive, number)}: eccentricity_error = {entry.eccentricity_error:g} mm: must be at most {size:g} mm in "
-                "size, a tenth of the smallest pin or roller radius and half the eccentricity"
+            yield Problem.of(
+                f"crank.of.{number}.eccentricity_error",
+                f"= {entry.eccentricity_error:g} mm",
+                f"must be at most {size:g} mm in size, a tenth of the smallest pin or roller radius and half the eccentricity",
+                shown=f"{_entry(drive, number)}: eccentricity_error",
             )
 
 
@@ -631,11 +801,9 @@ def _entry(drive: Drive, number: int) -> str:
     return entry_words(number) + (f" ({', '.join(told)})" if told else "")
 
 
-def named_in_disc(drive: Drive, problem: str, disc: int) -> str:
+def named_in_disc(drive: Drive, problem: Problem, disc: int) -> Problem:
     """Return a problem of a drive of one disc as one of the whole drive, with the paths of the values per disc."""
-    if isinstance(problem, Alternatives):
-        return problem.reworded(partial(_with_paths_of_disc, drive, disc))
-    return _with_paths_of_disc(drive, disc, problem)
+    return problem.reworded(partial(_with_paths_of_disc, drive, disc))
 
 
 def _with_paths_of_disc(drive: Drive, disc: int, problem: str) -> str:
@@ -651,7 +819,7 @@ def _with_paths_of_disc(drive: Drive, disc: int, problem: str) -> str:
     return problem
 
 
-def find_pin_problems(drive: Drive) -> Iterator[str]:
+def find_pin_problems(drive: Drive) -> Iterator[Problem]:
     """Yield the problems of seats and beams of pins and of their materials, one sentence each; single numbers are valid
     already.
     """
@@ -667,15 +835,23 @@ def find_pin_problems(drive: Drive) -> Iterator[str]:
             yield from _beam(drive, shaft, shaft.beam, "pin_shaft")
         yield from _one_compliance(shaft)
         if not shaft.elastic_contact and shaft.seat.kind == "sleeve":
-            yield 'pin_shaft.elastic_contact = false: must be true with sleeves (pin_shaft.seat.kind = "sleeve"), which yield'
+            yield Problem.of(
+                "pin_shaft.elastic_contact",
+                "= false",
+                'must be true with sleeves (pin_shaft.seat.kind = "sleeve"), which yield',
+            )
     kinds = {wheel.seat.kind} | (set() if shaft is None else {shaft.seat.kind})
     if "slot" not in kinds and drive.materials.wheel_seat != Material() and not _expands(drive, "wheel_seat"):
-        yield (
-            'materials.wheel_seat: must be left out without slots (pin_wheel.seat.kind = "slot"), but for its thermal_expansion '
-            "beside [temperature]"
+        yield Problem.of(
+            "materials.wheel_seat",
+            "",
+            'must be left out without slots (pin_wheel.seat.kind = "slot"), but for its thermal_expansion '
+            "beside [temperature]",
         )
     if "sleeve" not in kinds and drive.materials.sleeve != Material():
-        yield 'materials.sleeve: must be left out without sleeves (pin_wheel.seat, pin_shaft.seat: kind = "sleeve")'
+        yield Problem.of(
+            "materials.sleeve", "", 'must be left out without sleeves (pin_wheel.seat, pin_shaft.seat: kind = "sleeve")'
+        )
 
 
 def _expands(drive: Drive, part: str) -> bool:
@@ -683,17 +859,20 @@ def _expands(drive: Drive, part: str) -> bool:
     return drive.temperature is not None and getattr(drive.materials, part).thermal_expansion is not None
 
 
-def _one_compliance(shaft: PinShaft) -> Iterator[str]:
+def _one_compliance(shaft: PinShaft) -> Iterator[Problem]:
     if shaft.beam is None and shaft.stiffness is None:
-        yield "pin_shaft.stiffness: is missing; pins of the shaft need it, or pin_shaft.beam in its place"
+        yield Problem.of(
+            "pin_shaft.stiffness", "", "is missing; pins of the shaft need it, or pin_shaft.beam in its place"
+        )
     elif shaft.beam is not None and shaft.stiffness is not None:
-        yield (
-            f"pin_shaft.stiffness = {shaft.stiffness:g} N/mm: must be left out beside pin_shaft.beam, which determines how "
-            "the pins bend"
+        yield Problem.of(
+            "pin_shaft.stiffness",
+            f"= {shaft.stiffness:g} N/mm",
+            "must be left out beside pin_shaft.beam, which determines how the pins bend",
         )
 
 
-def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float) -> Iterator[str]:
+def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float) -> Iterator[Problem]:
     """Problems of the fields and radii of a seat; the play is at most the fraction `most` of the eccentricity."""
     kind = part.seat.kind
     given = {name: getattr(part.seat, name, None) for name in BELONGS}
@@ -702,10 +881,14 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
     for name, value in given.items():
         if value is not None and BELONGS[name] != kind:
             sound = False
-            yield f'{path}.seat.{name} = {value:g} mm: must be left out with {said}; it belongs to "{BELONGS[name]}"'
+            yield Problem.of(
+                f"{path}.seat.{name}",
+                f"= {value:g} mm",
+                f'must be left out with {said}; it belongs to "{BELONGS[name]}"',
+            )
         elif value is None and BELONGS[name] == kind:
             sound = False
-            yield f"{path}.seat.{name}: must be given with {said}"
+            yield Problem.of(f"{path}.seat.{name}", "", f"must be given with {said}")
     if kind == "fixed" or not sound:
         return
     errors = part.pin_errors.diameter
@@ -717,79 +900,105 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
         else (given["pin_radius"] or 0.0, f"{path}.seat.pin_radius", given["bore_radius"] or 0.0, "bore_radius")
     )
     what = "slot" if kind == "slot" else "sleeve"
-    named = f"{path}.seat.{hole} = {bore:g} mm"
+    named, value = f"{path}.seat.{hole}", f"= {bore:g} mm"
     if play <= ROUNDING:
-        yield f"{named}: must be greater than {inner:g} mm ({pin}), or the pin has no play in its {what}"
+        yield Problem.of(
+            named, value, f"must be greater than {inner:g} mm ({pin})", otherwise=f"the pin has no play in its {what}"
+        )
     elif kind == "slot" and bore >= 2.0 * outer - ROUNDING:
-        yield (
-            f"{named}: must be less than {2.0 * outer:g} mm, twice {pin}, or the pin is no guide any more (its effective "
-            f"radius {2.0 * outer - bore:g} mm is none)"
+        yield Problem.of(
+            named,
+            value,
+            f"must be less than {2.0 * outer:g} mm, twice {pin}",
+            otherwise=f"the pin is no guide any more (its effective radius {2.0 * outer - bore:g} mm is none)",
         )
     elif kind == "sleeve" and bore >= outer - ROUNDING:
-        yield f"{named}: must be less than {outer:g} mm ({path}.pin_radius), or the sleeve has no wall"
+        yield Problem.of(
+            named, value, f"must be less than {outer:g} mm ({path}.pin_radius)", otherwise="the sleeve has no wall"
+        )
     elif play > largest + ROUNDING:
         part_of = "the eccentricity" if most == 1.0 else "half the eccentricity"
-        yield (
-            f"{named}: must be at most {inner + largest:g} mm, {pin} and {part_of}, or the pins cannot lead the disc "
-            f"(play {play:g} mm)"
+        yield Problem.of(
+            named,
+            value,
+            f"must be at most {inner + largest:g} mm, {pin} and {part_of}",
+            otherwise=f"the pins cannot lead the disc (play {play:g} mm)",
         )
     elif kind == "slot" and 0.5 * growth >= play - ROUNDING:
-        yield (
-            f"{path}.pin_errors.diameter holds {growth:g} mm: must be less than {2.0 * play:.6g} mm, twice the play of "
-            f"{path}.seat.radius, or the pin does not fit its slot"
+        yield Problem.of(
+            f"{path}.pin_errors.diameter",
+            f"holds {growth:g} mm",
+            f"must be less than {2.0 * play:.6g} mm, twice the play of {path}.seat.radius",
+            otherwise="the pin does not fit its slot",
         )
     elif kind == "slot" and bore >= 2.0 * outer - shrinkage - ROUNDING:
-        yield (
-            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {bore - 2.0 * outer:.6g} mm, or the "
-            f"slot ({path}.seat.radius) is twice as wide as the pin"
+        yield Problem.of(
+            f"{path}.pin_errors.diameter",
+            f"holds {-shrinkage:g} mm",
+            f"must be greater than {bore - 2.0 * outer:.6g} mm",
+            otherwise=f"the slot ({path}.seat.radius) is twice as wide as the pin",
         )
     elif kind == "sleeve" and outer - 0.5 * shrinkage <= bore + ROUNDING:
-        yield (
-            f"{path}.pin_errors.diameter holds {-shrinkage:g} mm: must be greater than {2.0 * (bore - outer):.6g} mm, or the "
-            f"sleeve ({path}.seat.bore_radius) has no wall"
+        yield Problem.of(
+            f"{path}.pin_errors.diameter",
+            f"holds {-shrinkage:g} mm",
+            f"must be greater than {2.0 * (bore - outer):.6g} mm",
+            otherwise=f"the sleeve ({path}.seat.bore_radius) has no wall",
         )
 
 
-def _slots(wheel: PinWheel) -> Iterator[str]:
+def _slots(wheel: PinWheel) -> Iterator[Problem]:
     room, radius = wheel.pin_circle_radius * sin(pi / wheel.number_of_pins), wheel.seat.radius or 0.0
     # Pins that overlap, or have no hold in their slots, are reported elsewhere.
     if wheel.seat.kind == "slot" and radius >= room > wheel.pin_radius > 0.5 * radius:
-        yield (
-            f"pin_wheel.seat.radius = {radius:g} mm: must be less than {room:.6g} mm, or neighbouring slots cut into each other"
+        yield Problem.of(
+            "pin_wheel.seat.radius",
+            f"= {radius:g} mm",
+            f"must be less than {room:.6g} mm",
+            otherwise="neighbouring slots cut into each other",
         )
 
 
-def _core(wheel: PinWheel) -> Iterator[str]:
+def _core(wheel: PinWheel) -> Iterator[Problem]:
     core, errors = wheel.core_radius, wheel.pin_errors.diameter
     if core is None:
         return
     smallest = wheel.pin_radius + 0.5 * min((*errors, 0.0))
     if wheel.seat.kind == "sleeve":
-        yield (
-            f'pin_wheel.core_radius = {core:g} mm: must be left out with sleeves (pin_wheel.seat.kind = "sleeve"), which lie '
-            "loose on their pins and have no core"
+        yield Problem.of(
+            "pin_wheel.core_radius",
+            f"= {core:g} mm",
+            'must be left out with sleeves (pin_wheel.seat.kind = "sleeve"), which lie loose on their pins '
+            "and have no core",
         )
     elif core > MOST_OF_BODY * smallest:
-        yield (
-            f"pin_wheel.core_radius = {core:g} mm: must be at most {MOST_OF_BODY * smallest:g} mm, {MOST_OF_BODY:g} of the "
-            f"radius of the smallest pin (pin_wheel.pin_radius, pin_wheel.pin_errors.diameter), or too little of it deforms"
+        yield Problem.of(
+            "pin_wheel.core_radius",
+            f"= {core:g} mm",
+            f"must be at most {MOST_OF_BODY * smallest:g} mm, {MOST_OF_BODY:g} of the radius of the smallest "
+            "pin (pin_wheel.pin_radius, pin_wheel.pin_errors.diameter)",
+            otherwise="too little of it deforms",
         )
 
 
-def _race_bore(drive: Drive) -> Iterator[str]:
+def _race_bore(drive: Drive) -> Iterator[Problem]:
     bore, most = drive.crank_bearing.race_bore_radius, MOST_OF_BODY * drive.crank_bearing.inner_race_radius
     if bore is not None and bore > most:
-        yield (
-            f"crank_bearing.race_bore_radius = {bore:g} mm: must be at most {most:g} mm, {MOST_OF_BODY:g} of "
-            "crank_bearing.inner_race_radius, or too little of the race deforms"
+        yield Problem.of(
+            "crank_bearing.race_bore_radius",
+            f"= {bore:g} mm",
+            f"must be at most {most:g} mm, {MOST_OF_BODY:g} of crank_bearing.inner_race_radius",
+            otherwise="too little of the race deforms",
         )
 
 
-def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[str]:
+def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPinBeam, path: str) -> Iterator[Problem]:
     span = drive.wheel_pin_span if isinstance(beam, WheelPinBeam) else drive.shaft_pin_span
     half, thickness, planes = 0.5 * span, drive.disc.thickness, drive.disc.disc_planes
     if span > (most := range_of("mm")[1]):  # left out it follows from the discs
-        yield f"{path}.beam.span = {span:g} mm, from the first disc to the last: must be at most {most:g} mm"
+        yield Problem.of(
+            f"{path}.beam.span", f"= {span:g} mm, from the first disc to the last", f"must be at most {most:g} mm"
+        )
         return
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
     reach = abs(planes[disc]) + 0.5 * thickness
@@ -797,13 +1006,15 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
         which = "the disc" if len(planes) == 1 else f"disc {disc}"
         low, high = planes[disc] - 0.5 * thickness, planes[disc] + 0.5 * thickness
         held = "walls" if isinstance(beam, WheelPinBeam) else "flange and tip"
-        yield (
-            f"{path}.beam.span = {span:g} mm: must be at least {2.0 * reach:.6g} mm, or {which} from {low:.6g} to "
-            f"{high:.6g} mm (disc.planes, disc.thickness) is not between the {held} at ±{half:g} mm; left "
-            "out, it is as long as the discs with their gaps"
+        yield Problem.of(
+            f"{path}.beam.span",
+            f"= {span:g} mm",
+            f"must be at least {2.0 * reach:.6g} mm",
+            otherwise=f"{which} from {low:.6g} to {high:.6g} mm (disc.planes, disc.thickness) is not between the {held} "
+            f"at ±{half:g} mm; left out, it is as long as the discs with their gaps",
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
     widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
     of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"that of the pin ({path}.pin_radius)"
     if beam.diameter is not None and beam.diameter > widest + ROUNDING:
-        yield f"{path}.beam.diameter = {beam.diameter:g} mm: must be at most {widest:g} mm, {of}"
+        yield Problem.of(f"{path}.beam.diameter", f"= {beam.diameter:g} mm", f"must be at most {widest:g} mm, {of}")

@@ -8,17 +8,17 @@ from ltca.drive.members.temperatures import temperature_words, warm_drive
 from ltca.drive.parts import Drive, Temperature
 from ltca.drive.single_discs import single_discs, without_own
 from ltca.drive.unit_mistakes import kelvin_words
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 from ltca.geometry.interference import lost_play
 from ltca.reading.disc_checks import CHECKS, find_disc_problems
 from ltca.reading.member_checks import find_member_problems, named_in_disc
 
 
-def find_contradictions(drive: Drive) -> list[str]:
+def find_contradictions(drive: Drive) -> list[Problem]:
     """Return every physical contradiction of a drive whose single numbers are valid, one sentence each; empty for a sound
     drive.
 
-    Sentences have field, value, bound and unit.
+    Sentences have field, value, bound and unit; the field is data as well (`Problem.path`).
     """
     problems = [*find_member_problems(drive)]
     if problems:
@@ -37,7 +37,7 @@ def find_contradictions(drive: Drive) -> list[str]:
     return problems
 
 
-def _find_at_temperatures(drive: Drive) -> list[str]:
+def _find_at_temperatures(drive: Drive) -> list[Problem]:
     """Contradictions of the drive at 20 °C or, where there are none, at its temperatures."""
     cold = _cold(drive)
     if problems := find_contradictions(cold):
@@ -45,14 +45,15 @@ def _find_at_temperatures(drive: Drive) -> list[str]:
     try:
         warm = warm_drive(drive)
     except DriveError as error:
-        return [*error.problems]
+        return [Problem(problem) for problem in error.problems]
     problems = find_contradictions(warm)
     if not problems or drive.temperature is None:
         return problems
     at = kelvin_words(drive) or f"temperature: {temperature_words(drive.temperature)}"
     if gone := lost_play(cold, warm):
-        return [f"{at}: the drive seizes, {'; '.join(gone)}; parts overlap by more than bodies yield elastically"]
-    return [f"{at}: {problem}" for problem in problems]
+        seizes = f"the drive seizes, {'; '.join(gone)}; parts overlap by more than bodies yield elastically"
+        return [Problem.of("temperature", "", seizes, shown=at)]
+    return [problem.within("temperature", at) for problem in problems]
 
 
 def _cold(drive: Drive) -> Drive:

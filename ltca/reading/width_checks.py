@@ -11,16 +11,19 @@ from ltca.drive.declaration import ANY, declared_fields
 from ltca.drive.engine_support import given, shown, unit_of
 from ltca.drive.members.width import FEWEST_SLICES, LARGEST_SLOPE, MOST_SLICES, needs_slices
 from ltca.drive.parts import Disc, Drive
+from ltca.errors import Problem
 
 PLAY = "disc.axial_play"
 """The one field of the width that says something where it is zero."""
 
 
-def find_width_problems(drive: Drive) -> Iterator[str]:
+def find_width_problems(drive: Drive) -> Iterator[Problem]:
     """Yield the problems of slices along the width, of what needs them, and of inclined axes, one sentence each."""
     slices = drive.contact.slices
     if slices % 2 == 0:
-        yield f"contact.slices = {slices}: must be odd, 1 for the plane model or {FEWEST_SLICES} to {MOST_SLICES}"
+        yield Problem.of(
+            "contact.slices", f"= {slices}", f"must be odd, 1 for the plane model or {FEWEST_SLICES} to {MOST_SLICES}"
+        )
     if slices == 1:
         if _may_need_slices(drive):
             yield from _without_slices(drive)
@@ -31,13 +34,13 @@ def find_width_problems(drive: Drive) -> Iterator[str]:
     for path, inclination in axes:
         for name in ("x", "y"):
             if abs(angle := getattr(inclination, name)) > LARGEST_SLOPE:
-                yield f"{path}.inclination.{name} = {angle:g} rad: {slope_bound()}"
+                yield Problem.of(f"{path}.inclination.{name}", f"= {angle:g} rad", slope_bound())
     play, most = drive.disc.axial_play, drive.disc.thickness
     if play is not None and play > most:
-        yield f"{PLAY} = {play:g} mm: must be at most {most:g} mm, the thickness of the disc"
+        yield Problem.of(PLAY, f"= {play:g} mm", f"must be at most {most:g} mm, the thickness of the disc")
 
 
-def _without_slices(drive: Drive) -> Iterator[str]:
+def _without_slices(drive: Drive) -> Iterator[Problem]:
     """The one problem of a drive with something along the width that no slices see."""
     found = [
         f"{path} = {shown(value)}{unit_of(declared)}"
@@ -46,9 +49,11 @@ def _without_slices(drive: Drive) -> Iterator[str]:
         if value != default and (path == PLAY or any(value if isinstance(value, tuple) else (value,)))
     ]
     if found:
-        yield (
-            f"contact.slices = 1: must be odd, {FEWEST_SLICES} to {MOST_SLICES}, with {', '.join(found)}: nothing varies along "
-            "the width of one slice"
+        yield Problem.of(
+            "contact.slices",
+            "= 1",
+            f"must be odd, {FEWEST_SLICES} to {MOST_SLICES}, with {', '.join(found)}: nothing varies along "
+            "the width of one slice",
         )
 
 
@@ -88,26 +93,34 @@ def slope_bound() -> str:
     )
 
 
-def find_lead_problems(disc: Disc, bound: float) -> Iterator[str]:
+def find_lead_problems(disc: Disc, bound: float) -> Iterator[Problem]:
     """Yield the problems of the flank of a disc along its width; drops are at most `bound`, mm."""
     for name in ("lead_crown_drop", "lead_relief_depth"):
         if (drop := getattr(disc, name)) > bound:
-            yield (
-                f"disc.{name} = {drop:g} mm: must be at most {bound:g} mm, a tenth of the smallest pin or roller radius; a plain "
-                'number is in mm, micrometres are written "5 µm"'
+            yield Problem.of(
+                f"disc.{name}",
+                f"= {drop:g} mm",
+                f"must be at most {bound:g} mm, a tenth of the smallest pin or roller radius; a plain number is "
+                'in mm, micrometres are written "5 µm"',
             )
     if abs(disc.lead_slope) > LARGEST_SLOPE:
-        yield f"disc.lead_slope = {disc.lead_slope:g} rad: {slope_bound()}"
+        yield Problem.of("disc.lead_slope", f"= {disc.lead_slope:g} rad", slope_bound())
     length, depth, half = disc.lead_relief_length, disc.lead_relief_depth, 0.5 * disc.thickness
     if length > half:
-        yield f"disc.lead_relief_length = {length:g} mm: must be at most {half:g} mm, half the thickness of the disc"
+        yield Problem.of(
+            "disc.lead_relief_length",
+            f"= {length:g} mm",
+            f"must be at most {half:g} mm, half the thickness of the disc",
+        )
     if length and not depth:
-        yield (
-            f"disc.lead_relief_depth = 0 mm: must be greater than 0 with disc.lead_relief_length = {length:g} mm, which relieves "
-            "nothing alone"
+        yield Problem.of(
+            "disc.lead_relief_depth",
+            "= 0 mm",
+            f"must be greater than 0 with disc.lead_relief_length = {length:g} mm, which relieves nothing alone",
         )
     if depth and not length:
-        yield (
-            f"disc.lead_relief_length = 0 mm: must be greater than 0 with disc.lead_relief_depth = {depth:g} mm, which relieves "
-            "nothing alone"
+        yield Problem.of(
+            "disc.lead_relief_length",
+            "= 0 mm",
+            f"must be greater than 0 with disc.lead_relief_depth = {depth:g} mm, which relieves nothing alone",
         )

@@ -13,6 +13,7 @@ import numpy as np
 
 from ltca.analysis.engines import Engine, HalfSpace
 from ltca.arrays import FloatArray
+from ltca.drive.engine_support import shown, unit_of
 from ltca.drive.fields import whose, with_whose
 from ltca.drive.members.limits import Limits
 from ltca.drive.parts import Drive
@@ -22,7 +23,7 @@ from ltca.output.provenance import code_hash
 from ltca.output.threads import on_one_thread
 from ltca.reading.changes import with_fields
 from ltca.studies.batch_analysis import BatchSettings, Nominal, analyse_samples, solve_nominal
-from ltca.studies.designs import Design, ToleranceDesign
+from ltca.studies.designs import Design, SweepDesign, ToleranceDesign
 from ltca.studies.shapes import coefficients_identity, rings_of, shapes_of
 from ltca.studies.yields import Judged
 
@@ -243,4 +244,16 @@ def run_batch(study: Study, number: int) -> BatchResult:
     values[sound] = solved.values
     for place, message in zip(sound, solved.messages, strict=True):
         messages[place] = message
-    return BatchResult(number=number, factors=factors, values=values, messages=tuple(messages))
+    told = tuple(_about_the_factor(study.design, row, message) for row, message in zip(factors, messages, strict=True))
+    return BatchResult(number=number, factors=factors, values=values, messages=told)
+
+
+def _about_the_factor(design: Design, row: FloatArray, message: str) -> str:
+    """The message of a failed sample, behind the only field that a sweep varies, cases aside, where it names others alone."""
+    if not message or not isinstance(design, SweepDesign):
+        return message
+    varied = {path: value for path, value in design.fields(row).items() if path != "case"}
+    if len(varied) != 1:
+        return message
+    ((path, value),) = varied.items()
+    return message if path in message else f"{path} = {shown(value)}{unit_of(path)}: {message}"

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import subprocess
 import sys
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
 
-from ltca.commands.program import main
+from ltca.commands.program import GROUP, main
 from ltca.errors import FaultError, PlaceError
 from ltca.output import files
 from ltca.output.files import STALE, whole_file
@@ -117,6 +119,11 @@ def test_numbers_of_one_run_never_lie_beside_pictures_of_another(tmp_path, monke
     assert content["complete"]
 
 
+ROOT = Path(__file__).parents[2]
+STUDIES = ("tolerance", "sweep")
+REQUIREMENTS = str(ROOT / "examples" / "requirements" / "possible-paper.toml")
+STUDY = "study.toml"
+"""A study file that `in_folder` writes where a test runs."""
 COMMANDS = {
     "run": (["run", "paper", "--angles", "0"], "results.nc"),
     "run figures": (["run", "paper", "--angles", "0", "--figures"], "figures/fig24_pin_load.svg"),
@@ -134,7 +141,36 @@ COMMANDS = {
     "mesh": (["mesh", "paper"], "pin_12.vtu"),
     "fem": (["fem", "paper"], "summary.json"),
     "validate": (["validate", "paper"], "rows.csv"),
+    "check": (["check", "paper"], "check.json"),
+    "check page": (["check", "paper"], "report.html"),
+    "dynamics": (["dynamics", "paper", "--speed", "1500"], "dynamics.json"),
+    "time": (["dynamics", "paper", "--case", "CS-1", "--speed", "1500", "--time", "1 ms"], "time.nc"),
+    "sweep": (["sweep", STUDY], "results.parquet"),
+    "design": (["design", REQUIREMENTS], "designs.csv"),
+    "export": (["export", "paper", "--case", "CS-1", "--format", "csv", "--part", "disc"], "paper_CS-1_disc_flank.csv"),
+    "export model": (["export", "paper", "--case", "CS-1", "--for", "json"], "paper_CS_1.json"),
 }
+
+
+@pytest.fixture(autouse=True)
+def in_folder(tmp_path, monkeypatch):
+    """A folder with a study file, beside what a test writes."""
+    place = tmp_path.parent / f"{tmp_path.name}_study"
+    place.mkdir(exist_ok=True)
+    (place / STUDY).write_text('drive = "paper"\npositions = 2\n[factors]\n"clearance.bearing" = [0.0, 0.01]\n')
+    monkeypatch.chdir(place)
+
+
+def test_every_command_that_writes_to_a_folder_is_among_these():
+    """`check` and `dynamics` were not: what they do with files of the user was tested of other commands alone."""
+    writing = set()
+    for entry in entry_points(group=GROUP):
+        parser = argparse.ArgumentParser()
+        entry.load().configure(parser)
+        if any("--out" in action.option_strings and action.metavar == "DIR" for action in parser._actions):
+            writing.add(entry.name)
+    assert writing == {words[0] for words, _ in COMMANDS.values()}
+    assert {"run", "check", "curves", "dynamics", "design", "fem", "validate"} <= writing
 
 
 @pytest.mark.parametrize(("words", "name"), COMMANDS.values(), ids=COMMANDS)
@@ -160,7 +196,7 @@ def test_a_file_of_the_user_is_never_overwritten(words, name, kind, tmp_path, ca
     assert [path for path in out.rglob("*") if path.is_file()] == ([place] if kind != "folder" else [])
 
 
-@pytest.mark.parametrize("words", [words for words, name in COMMANDS.values() if words[0] != "tolerance"], ids=str)
+@pytest.mark.parametrize("words", [words for words, name in COMMANDS.values() if words[0] not in STUDIES], ids=str)
 def test_an_interrupted_study_is_not_made_useless_by_another_command(words, tmp_path, capsys):
     """A run removed study.json as a file of the last run: batches were left that could never be resumed."""
     out = tmp_path / "out"
@@ -205,6 +241,7 @@ def test_what_a_run_does_not_write_hinders_none(tmp_path):
 @pytest.mark.parametrize(
     ("words", "name"),
     [entry for entry in COMMANDS.values() if "--sample" not in entry[0] and "--resume" not in entry[0]],
+    ids=lambda one: one if isinstance(one, str) else one[0],
 )
 def test_what_the_user_changed_of_a_run_is_not_overwritten(words, name, tmp_path, capsys):
     """A summary.json with notes in it was overwritten: the manifest was asked for its name, not for its checksum."""

@@ -42,7 +42,7 @@ REFUSED = {
     ),
     "holes_of_pin_diameter_plus_eccentricity": (
         r"pin_shaft\.hole_radius = 2\.25 mm: must be at least 2\.5 mm \(pin_shaft\.pin_radius \+ crank\.eccentricity, .*\) or "
-        r"crank\.eccentricity at most 0\.25 mm, or it overlaps its pin by 0\.25 mm"
+        r"crank\.eccentricity at most 0\.25 mm, or the hole overlaps its pin by 0\.25 mm"
     ),
     # 40 mm · sin 3°
     "pins_that_collide": r"pin_wheel\.pin_radius = 2\.5 mm: must be less than 2\.09344 mm, or neighbouring pins overlap",

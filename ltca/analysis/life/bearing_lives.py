@@ -215,7 +215,7 @@ def at_entry(analysis: LoadedAnalysis, number: int) -> LoadedAnalysis:
     try:
         return analyse(replace(drive, load=load), analysis.full.crank_angle, torque, analysis.engine)
     except DriveError as error:
-        raise DriveError(
+        raise type(error)(
             [f"duty.{number}.torque = {torque:g} N·mm: {problem}" for problem in error.problems]
         ) from error
     except ConvergenceError as error:

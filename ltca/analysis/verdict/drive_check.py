@@ -18,7 +18,7 @@ from ltca.drive.members.limits import Limit
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.members.verdict_words import is_of_sampling, urgency, verdict_table
 from ltca.drive.parts import Drive
-from ltca.errors import DriveError
+from ltca.errors import OverloadError
 from ltca.geometry.placement import position_angles
 
 ADVICE_POSITIONS = 60
@@ -153,10 +153,8 @@ def check_drive(
         try:
             analysis = analyse(drive, position_angles(positions), part * whole, used)
             break
-        except DriveError as error:
+        except OverloadError as error:
             # Contacts wider than the bodies are curved: less of the torque tells how far it is from being carried.
-            if "cannot be carried" not in str(error):
-                raise
             if part < LEAST_PART and drive.temperature is not None:
                 return found(_seized(drive, limits), {}, [*error.problems])
             if part < LEAST_PART:

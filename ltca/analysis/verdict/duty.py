@@ -9,7 +9,7 @@ from ltca.analysis.life.bearing_lives import at_entry
 from ltca.analysis.loaded_analysis import LoadedAnalysis
 from ltca.analysis.summary import summarise
 from ltca.drive.members.judgement import Value
-from ltca.errors import DriveError
+from ltca.errors import OverloadError
 from ltca.quantities import LIMITED
 
 FindValues = Callable[..., list[Value]]
@@ -34,7 +34,7 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
     """
     found = list(values)
     for number, entry in _heavier(analysis):
-        if isinstance(entry, DriveError):
+        if isinstance(entry, OverloadError):
             carried = analysis.torque / analysis.drive.duty[number].torque
             part = f"duty.{number}, of which the load is carried"
             found.insert(0, Value(quantity="carried_torque", value=carried, part=part))
@@ -47,7 +47,7 @@ def worst_of_duty(analysis: LoadedAnalysis, values: Sequence[Value], find_values
     return found
 
 
-def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | DriveError]]:
+def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | OverloadError]]:
     """Entries that are heavier or quicker than the load, solved at the same positions by the same engine."""
     if not analysis.drive.duty:
         return
@@ -60,7 +60,5 @@ def _heavier(analysis: LoadedAnalysis) -> Iterator[tuple[int, LoadedAnalysis | D
             continue
         try:
             yield number, at_entry(analysis, number)
-        except DriveError as error:
-            if "cannot be carried" not in str(error):
-                raise
+        except OverloadError as error:
             yield number, error

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ltca.analysis.loaded_analysis import LoadedAnalysis
-from ltca.arrays import FloatArray
+from ltca.arrays import FloatArray, place_of_largest
 from ltca.drive.members.judgement import Value
 from ltca.drive.members.verdict_words import part_words
 
@@ -27,16 +27,16 @@ def largest_value(
 ) -> Value:
     """Return the largest of values, shape (positions, pairs), as a limited quantity with its part and crank angle.
 
-    Pairs are those of disc 0 first, of all discs unless `discs` says of how many; `name` is what a pair is called. A larger value
-    between the positions, `refined`, counts at the place of the sampled one.
+    Pairs are those of disc 0 first, of all discs unless `discs` says of how many; `name` is what a pair is called. Of equal
+    values the first is named. A larger value between the positions, `refined`, counts at the place of the sampled one.
     """
     if not np.any(np.isfinite(values)):
         return Value(quantity=quantity, value=None, reason="the engine cannot say it")
-    position, pair = np.unravel_index(int(np.nanargmax(values)), values.shape)
+    position, pair = place_of_largest(values)
     count = len(analysis.model.discs) if discs is None else discs
-    disc, number = divmod(int(pair), values.shape[1] // count)
+    disc, number = divmod(pair, values.shape[1] // count)
     part = part_words(analysis.drive, name, number, values.shape[1] // count, disc if discs is None else None)
-    largest = float(values[position, pair])
+    largest = float(np.nanmax(values))
     return Value(
         quantity=quantity,
         value=largest if refined is None else max(refined, largest),

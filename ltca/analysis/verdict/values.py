@@ -24,13 +24,14 @@ from ltca.analysis.verdict.geometry import pin_hollow_margin, roller_gap, underc
 from ltca.analysis.verdict.pin_stress import PinStress, pin_stress
 from ltca.analysis.verdict.places import largest_value, most_of
 from ltca.analysis.verdict.proportions import odd_proportions
+from ltca.arrays import place_of_largest
 from ltca.compliance.response import ContactPressures, KindPressures
 from ltca.contact.subsurface import LINE_SHEAR_DEPTH, line_contact_shear, line_contact_shear_at
 from ltca.drive.members.judgement import ANYWHERE, WHOLE, Check, Value, allowable_anywhere, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.single_discs import single_discs
 from ltca.drive.yielding_parts import yielding_parts
-from ltca.errors import DriveError
+from ltca.errors import OverloadError
 from ltca.geometry.interference import overlap_at_rest
 from ltca.geometry.play import PLAY_SAMPLED, preload_words
 from ltca.quantities import LIMITED, QUANTITIES
@@ -123,8 +124,8 @@ def _anywhere(analysis: LoadedAnalysis, summary: Mapping[str, float | None]) -> 
         refined = refined_value(summary, LIMITED[scalar].key) if scalar in LIMITED else None
         value = largest_value(analysis, quantity, kind.largest, name, refined)
         if kind.along is not None and value.value is not None:
-            place = np.unravel_index(int(np.nanargmax(kind.largest)), kind.largest.shape)
-            value = replace(value, part=f"{value.part}, z = {kind.along.place[place]:.3g} mm")
+            height = kind.along.place[place_of_largest(kind.largest)]
+            value = replace(value, part=f"{value.part}, z = {height:.3g} mm")
         yield value
 
 
@@ -311,9 +312,7 @@ def _of_lives(analysis: LoadedAnalysis) -> Iterator[Value]:
         return
     try:
         lives = bearing_lives(analysis)
-    except DriveError as error:
-        if "cannot be carried" not in str(error):
-            raise
+    except OverloadError as error:
         yield from (Value(quantity=name, value=None, reason=error.problems[0]) for name in named)
         return
     told = ("; ".join(lives.not_rated)) if lives.not_rated else "there is no speed (load.speed)"

@@ -23,7 +23,7 @@ from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
 from ltca.page.studies.samples import samples_page, values_of_one_factor, yield_words
 from ltca.page.study_page import write_study_page
 from ltca.quantities import SCALARS, printed
-from ltca.reading.arguments import tell_unit_mistakes
+from ltca.reading.arguments import refuse_impossible_torques, tell_unit_mistakes
 from ltca.studies.designs import SweepDesign
 from ltca.studies.execution.storage import StudyFolder
 from ltca.studies.execution.workers import Workers
@@ -52,6 +52,8 @@ def execute_study(study: Study, folder: StudyFolder, arguments: argparse.Namespa
         ):
             print(f"drive of sample {arguments.sample}: {write_sample(study, folder, arguments.sample)}")
         return 0
+    if study.near_nominal:  # what a sweep varies may carry the torque
+        refuse_impossible_torques(drive for _, drive in study.cases)
     columns = len(study.design.names) + len(study.quantities)
     size = COPIES * 8.0 * columns * study.design.samples
     require_room(size, memory=0.0, folder=folder.path, option=f"{study.design.samples} samples")

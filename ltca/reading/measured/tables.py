@@ -67,8 +67,7 @@ class MeasuredFiles:
                 continue
             # Points that leave no flank are reported with their file.
             for problem in find_contradictions(drive):
-                told = problem.partition(": ")[2] or problem
-                problems.append(f"{path}: {self._folder / name}: {told}; {FILTER}")
+                problems.append(f"{path}: {self._folder / name}: {problem.said or problem}; {FILTER}")
         return drive
 
     def _with_one(self, drive: Drive, disc: int | None, name: Any) -> Drive:

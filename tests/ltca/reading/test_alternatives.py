@@ -30,7 +30,7 @@ BOUNDS = {"crank.eccentricity": "at most 3 mm", "pin_shaft.hole_radius": "at lea
 def test_the_two_fields_of_a_contradiction_were_read_from_its_words(changes, fields):
     problem = find_contradictions(with_fields(PAPER, changes, check=False))[0]
     assert isinstance(problem, Alternatives)
-    assert (problem.field, problem.other) == fields
+    assert (problem.path, problem.other) == fields
     assert problem.startswith(f"{fields[0]} = ")
     assert problem.other_first.startswith(f"{fields[1]} = ")
 
@@ -39,17 +39,17 @@ def test_other_words_do_not_change_which_field_was_changed(monkeypatch):
     """A reworded message, as one in another language, lost the field of the change."""
     monkeypatch.setattr(
         "ltca.reading.changes.find_contradictions",
-        lambda drive: [Alternatives.of(drive, BOUNDS, "").reworded(lambda text: text.replace("must be", "soll"))],
+        lambda drive: [Alternatives.between(drive, BOUNDS, "").reworded(lambda text: text.replace("must be", "soll"))],
     )
     with pytest.raises(DriveError, match=r"^pin_shaft\.hole_radius = 14 mm: soll at least 15 mm or crank\.ecc"):
         with_fields(PAPER, {"pin_shaft.hole_radius": 14.0})
 
 
 def test_fields_go_with_a_contradiction_to_another_process():
-    problem = Alternatives.of(PAPER, BOUNDS, ", or else")
+    problem = Alternatives.between(PAPER, BOUNDS, "else")
     again = pickle.loads(pickle.dumps(problem))
-    assert (again, again.field, again.other, again.other_first) == (
-        problem, problem.field, problem.other, problem.other_first,
+    assert (again, again.path, again.other, again.other_first) == (
+        problem, problem.path, problem.other, problem.other_first,
     )  # fmt: skip
 
 
