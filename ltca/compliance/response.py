@@ -82,6 +82,10 @@ class DiscResponse:
     ----------
     force : array, shape (positions, coordinates)
         Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
+    flank, holes : FlankMotion, PairMotion
+        Approaches of wheel pins and shaft pins.
+    rollers : RollerState
+        Rollers between races and bores.
     pin_load, hole_load : array, shape (positions, pairs)
         N.
     shifts, leans : array of complex, shape (positions, pairs), or None

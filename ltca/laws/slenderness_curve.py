@@ -113,13 +113,13 @@ class SlendernessCurve:
         if not inside:
             place = place.clip(0.0, float(pieces))
         piece = np.minimum(place.astype(np.intp), pieces - 1)
-        value, first, second = quintic(self.coefficients.take(piece, axis=1), place - piece)
+        value, first, second = map(np.asarray, quintic(self.coefficients.take(piece, axis=1), place - piece))
         inverse = 1.0 / self.spacing
         first *= inverse
         second *= inverse * inverse
         if not inside:
             self._beyond(x, value, first, second)
-        return np.asarray(value), np.asarray(first), np.asarray(second)
+        return value, first, second
 
     def _beyond(self, x: FloatArray, *results: FloatArray) -> None:
         """Replace values and derivatives of points beyond the knots."""
