@@ -143,10 +143,14 @@ def _moments(length: float, slices: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedLine:
-    """Law of line contacts of one length, mm, and contact modulus E*, MPa, in at least 3 slices.
+    """Law of line contacts of one length in slices.
 
     Attributes
     ----------
+    length, contact_modulus : float
+        mm and E*, MPa.
+    slices : int
+        At least 3.
     relief : array, shape (slices, points)
         h, mm: by how much lead and profile fall short at the points (`slice_heights`).
     sleeve : float
