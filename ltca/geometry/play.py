@@ -290,28 +290,28 @@ class _Disc:
         turned = pose[:, WHEEL_ANGLE, None] - pose[:, DISC_ROTATION, None]
         flank = geometry.flank(angle, pose, self.parameter[rows] + turned)
         gaps = [(rays.bore_play - length, moved.real), *((-pair.approach, -pair.gradient) for pair in (holes, flank))]
+        arcs, flanks = gaps[:2], gaps[2:]
         if self.lines:
             tilts = (
                 geometry.roller_tilt(pose, bores, rays),
                 geometry.hole_tilt(pose, holes),
                 geometry.flank_tilt(angle, pose, flank),
             )
-            gaps = self._along_width(geometry, gaps, tilts)
-        arcs = sum(gap.shape[1] for gap, _ in gaps) - flank.approach.shape[1] * (2 if self.lines else 1)
-        return *_joined(gaps), arcs
+            arcs, flanks = self._along_width(geometry, gaps, tilts)
+        return *_joined([*arcs, *flanks]), sum(gap.shape[1] for gap, _ in arcs)
 
-    def _along_width(self, geometry: ContactGeometry, gaps: Sequence[_Gap], tilts: Sequence[PairTilt]) -> list[_Gap]:
-        """Gaps of rollers, shaft pins and wheel pins at their heights: all that are convex and those of bent flanks, of which
-        tangents are kept as well, before the ends of the flanks.
-        """
+    def _along_width(
+        self, geometry: ContactGeometry, gaps: Sequence[_Gap], tilts: Sequence[PairTilt]
+    ) -> tuple[list[_Gap], list[_Gap]]:
+        """Gaps of rollers and shaft pins at their heights, and those of wheel pins, which are not convex."""
         size = (gaps[0][0].shape[0], ACROSS.size)
-        ends, bent = list[list[_Gap]](), list[_Gap]()
+        each = list[list[_Gap]]()
         for (places, bends), (half, drop), own, tilt in zip(self.lines, _lines(geometry), gaps, tilts, strict=True):
             z, short = np.broadcast_to(half * ACROSS, size), np.broadcast_to(drop, size)
-            ends.append([tilt.at(*own, z[:, [place]], short[:, [place]]) for place in places])
+            each.append([tilt.at(*own, z[:, [place]], short[:, [place]]) for place in places])
             if bends:
-                bent.append(tilt.at(*own, *tilt.deepest(z, short)))
-        return [*ends[0], *ends[1], *bent, *ends[2]]
+                each[-1].append(tilt.at(*own, *tilt.deepest(z, short)))
+        return [*each[0], *each[1]], each[2]
 
 
 def _lines(geometry: ContactGeometry) -> tuple[tuple[float | FloatArray, FloatArray], ...]:

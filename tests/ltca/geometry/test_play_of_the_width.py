@@ -70,6 +70,15 @@ def test_discs_that_may_lean_between_upright_parts_gain_nothing_by_it(loose):
     np.testing.assert_allclose(play_of(nearly), play_of(loose), rtol=0.0, atol=FOUND)
 
 
+def test_tangents_of_crowned_flanks_are_not_kept(loose):
+    """Flanks are not convex: tangents of those that are pressed in their middle took up to 1e-6 rad at two of these positions."""
+    play = {"clearance.bearing": 0.1, "clearance.pin_hole": 0.05}
+    loose = with_fields(loose, play | {"disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0})
+    angles = np.linspace(0.05, 6.2, 24)
+    nearly = with_fields(loose, SLICES | {"pin_wheel.inclination.x": 1e-12, "disc.lead_crown_drop": 0.01})
+    np.testing.assert_allclose(play_of(nearly, angles), play_of(loose, angles), rtol=0.0, atol=FOUND)
+
+
 def test_where_all_parts_lean_alike_the_disc_leans_with_them(two_discs):
     """A frame that is askew as a whole; discs beside its middle are displaced with it."""
     alike = {f"{part}.inclination.{axis}": 6e-4 for part in ("pin_wheel", "pin_shaft", "crank") for axis in "xy"}
