@@ -356,7 +356,7 @@ class DiscContacts:
     Attributes
     ----------
     geometry : ContactGeometry
-        Where they are.
+        Of the disc in its drive.
     pin_law, outer_law, inner_law, hole_law : ContactLaw, or law in slices
         Of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
     kinds : ContactKinds
