@@ -28,8 +28,8 @@ FLOORS = (
     "fem.errors", "fem.discretisation_error", "fem.shapes", "fem.mesh", "fem.body", "fem.solid", "fem.options", "fem.contact",
     "fem.drive", "fem.solid_contact", "fem.reducer",
     "fem.solid_drive", "fem.coefficients", "fem.referee", "fem.pictures", "fem.export", "fem.testing", "fem",
-    "validation.hertz", "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study", "validation.report",
-    "validation.seats", "validation.manual",
+    "validation.hertz", "validation.methods", "validation.rows", "validation.compare", "validation.levels", "validation.study",
+    "validation.report", "validation.seats", "validation.manual",
     "ltca.commands", "fem.commands", "validation.commands", "validation",
 )  # fmt: skip
 # What a package may not see at all: ltca stands alone, nothing sees validation.
