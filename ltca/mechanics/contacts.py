@@ -645,10 +645,19 @@ class Linearised:
     @property
     def _closed(self) -> FloatArray:
         """How deep the correction presses what is open, mm: a roller is pressed where its whole play is."""
-        after = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
-        for _, bores, _, races in self.at:
+        after = self.deformation[:, 0] + self.moved_by_pins
+        if not self.every:
+            after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
+        for _, bores, _, races in self.system.of_kind:
             after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
-        return np.asarray(np.max(np.where(self.chosen_stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
+        return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
+
+    @cached_property
+    def moved_by_pins(self) -> FloatArray:
+        """What approaches grow by as displaced pins go where the loads press them, mm, shape (positions, contacts)."""
+        if self.shifts is None or self.shifts_after is None:
+            return np.zeros(self.overlap[:, 0].shape)
+        return self.members.approaches(self.shifts_after - self.shifts)[:, 0]
 
     @property
     def onward(self) -> Start:
@@ -911,7 +920,7 @@ class Linearised:
                 else 3 * [0.0]
             )
             for kind, part in enumerate(parts):
-                reach = self.overlap[:, 0, kinds[kind]] - part
+                reach = (self.overlap[:, 0] + self.moved_by_pins)[:, kinds[kind]] - part
                 if self.system.components > 1:
                     reach = reach + np.abs(self.overlap[:, 1, kinds[kind]])
                 pressed = reach > 0.0

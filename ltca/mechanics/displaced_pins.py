@@ -73,20 +73,17 @@ class PinMembers:
         return np.stack(forces + moments, axis=1)
 
     def approaches(self, shifts: ComplexArray) -> FloatArray:
-        """Return N u of the chosen contacts, shape (positions, components, chosen)."""
-        system, at = self.at.system, self.at
-        found = np.zeros((shifts.shape[0], system.components, at.count))
-        for disc in range(system.discs):
-            by = dot(self.normal[disc], shifts[:, disc])
-            each = [by]
+        """Return N u of all contacts, shape (positions, components, contacts)."""
+        system = self.at.system
+        found = np.zeros((shifts.shape[0], system.components, system.contacts))
+        for disc, (pins, _, holes, _) in enumerate(system.of_kind):
+            each = [dot(self.normal[disc], shifts[:, disc])]
             if self.turning:
                 each.append(
                     dot(self.turning[disc], shifts[:, disc]) + dot(self.normal[disc], shifts[:, system.discs + disc])
                 )
-            some = at.chosen[disc]
-            for kind, first in ((0, 0), (2, system.pins)):
-                for component, values in enumerate(each):
-                    found[:, component, at.at[disc][kind]] = values[at.row, first + some[kind]]
+            for component, values in enumerate(each):
+                found[:, component, pins], found[:, component, holes] = np.split(values, (system.pins,), axis=1)
         return found
 
     def unsettled(self, shifts: ComplexArray) -> ComplexArray:

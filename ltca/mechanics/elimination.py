@@ -150,7 +150,7 @@ def eliminate_by_disc(at: Any) -> None:
 def _moved_aside(at: Any, aside: FloatArray) -> FloatArray:
     """What loads that turn with displaced pins press these aside takes of the deformations of the chosen contacts."""
     force = at.members.forces(np.zeros(at.load.shape), aside[..., -1], changes=True)
-    moved: FloatArray = at.members.approaches(at.system.model.pins.under(force))
+    moved: FloatArray = at.of_chosen(at.members.approaches(at.system.model.pins.under(force)))
     return moved
 
 
@@ -373,7 +373,7 @@ def _flexibility(at: Any, part: Pressing) -> tuple[FloatArray, FloatArray]:
     if system.coupled:
         left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], part.load)
     if members is not None and at.shifts is not None and system.model.pins is not None:
-        left += members.approaches(members.unsettled(at.shifts))
+        left += at.of_chosen(members.approaches(members.unsettled(at.shifts)))
         members.add_flexibility(whole)
     return whole, left
 
