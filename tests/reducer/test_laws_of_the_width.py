@@ -8,6 +8,7 @@ import pytest
 from ltca.analysis.engines import HalfSpace
 from ltca.drive.parts import Inclination, PlacementErrors
 from ltca.equilibrium.output_torque import solve_at_output
+from ltca.mechanics.contacts import ContactSystem
 from ltca.reading.drive_file import build_drive, load_drive
 
 ANGLES = np.array([0.4, 2.9])
@@ -163,9 +164,10 @@ def test_work_of_a_small_turn_of_the_wheel_is_that_of_its_moment(held):
     found = solve_at_output(model, [drive], ANGLES[:1], drive.load.torque)
 
     def energy(pose):
-        part, disc = model.respond(ANGLES[:1], pose).parts[0], model.discs[0]
-        on_pins = disc.pin_law.energy(part.leaning_pins.contact, part.flank.effective_radius)
-        return float(on_pins.sum() + disc.hole_law.energy(part.leaning_holes.contact, 0.0).sum())
+        at, disc = ContactSystem(model).respond(ANGLES[:1], pose, None, roughly=False), model.discs[0]
+        pins, _, holes, _ = at.slices_after(0)
+        on_pins = disc.pin_law.energy(pins, at.discs[0].flank.effective_radius)
+        return float(on_pins.sum() + disc.hole_law.energy(holes, 0.0).sum())
 
     ends = []
     for side in (1.0, -1.0):

@@ -47,7 +47,7 @@ def derived(monkeypatch):
         asked.append(drive.ring.outer_radius)
         return drive.ring.material.youngs_modulus * drive.ring.width * beam_flexibility(drive)
 
-    monkeypatch.setattr(rings, "_found", found)
+    monkeypatch.setattr(rings, "_kept_or_derived", found)
     monkeypatch.setattr(rings, "_KNOWN", {})
     monkeypatch.setattr(shapes, "has_ring", lambda drive: ring_fingerprint(drive) in rings._KNOWN)
     return asked
