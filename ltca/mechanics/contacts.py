@@ -912,20 +912,14 @@ class Linearised:
         found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.deforms or not np.isfinite(self.margin):
             return found
-        for disc, yielding in enumerate(self.yielding):
-            some, kinds = self.chosen[disc], self.system.of_kind[disc]
-            parts = (
-                np.split(yielding[0], np.cumsum((self.system.pins, self.system.rollers)), axis=1)
-                if yielding
-                else 3 * [0.0]
-            )
-            for kind, part in enumerate(parts):
-                reach = (self.overlap[:, 0] + self.moved_by_pins)[:, kinds[kind]] - part
-                if self.system.components > 1:
-                    reach = reach + np.abs(self.overlap[:, 1, kinds[kind]])
-                pressed = reach > 0.0
-                pressed[self.row, some[kind]] = False
-                found |= pressed.any(axis=1)
+        reach = self.overlap[:, 0] + self.moved_by_pins
+        if self.system.components > 1:
+            reach = reach + np.abs(self.overlap[:, 1])
+        for disc, (kinds, yielding) in enumerate(zip(self.system.of_kind, self.yielding, strict=True)):
+            pressed = reach[:, kinds[0].start : kinds[2].stop] > (yielding[0] if yielding else 0.0)
+            for some, kind in zip(self.chosen[disc][:3], kinds[:3], strict=True):
+                pressed[self.row, some + kind.start - kinds[0].start] = False
+            found |= pressed.any(axis=1)
         return found
 
     @property

@@ -91,21 +91,16 @@ class PinMembers:
         self._left: ComplexArray = np.asarray(shifts + self.at.system.model.pins.under(self.forces(self.at.load)))
         return self._left
 
-    def slips(self, chosen: bool = False) -> FloatArray:
-        """Return what pins have still to slip along their contacts, of all pairs, shape (positions, components, discs, pairs), or
-        of the chosen ones as `turned_loads` has them.
-        """
+    def slips(self) -> FloatArray:
+        """Return what pins have still to slip along the chosen contacts, as `turned_loads` has them."""
         found, at, system = [], self.at, self.at.system
-        for disc, along in enumerate(self.along):
+        for disc, (along, own) in enumerate(zip(self.along, at.chosen, strict=True)):
+            some = np.concatenate((own[0], system.pins + own[2]), axis=1)
             each = [dot(along, self._left[:, disc])]
             if self.turning:
                 each.append(dot(along, self._left[:, system.discs + disc]))
-            found.append(np.stack(each, axis=1))
-        if not chosen:
-            return np.stack(found, axis=2)
-        some = [np.concatenate((own[0], system.pins + own[2]), axis=1) for own in at.chosen]
-        picked = [np.take_along_axis(one, own[:, None], axis=2) for one, own in zip(found, some, strict=True)]
-        return np.concatenate(picked, axis=2)
+            found.append(np.stack([one[at.row, some] for one in each], axis=1))
+        return np.concatenate(found, axis=2)
 
     def _chosen(self) -> None:
         """Where the contacts on pins stand among the chosen, and on which pins and discs."""

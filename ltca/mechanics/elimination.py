@@ -253,7 +253,7 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
         shape = rows, components * along.shape[2], size
         tangent = tangent - np.matmul(along.reshape(shape).swapaxes(1, 2), held.reshape(shape))
         g, force_map = np.concatenate((g, along), axis=2), np.concatenate((force_map, along), axis=2)
-        left = np.concatenate((left, at.members.slips(chosen=True)), axis=2)
+        left = np.concatenate((left, at.members.slips()), axis=2)
         turn = np.concatenate((np.zeros(part.g.shape), turn), axis=2).reshape(rows, -1, size)
         stiffness = np.concatenate((_filled(stiffness, bent.shape[0]), bent), axis=2)
     mine, count = count, g.shape[2]
