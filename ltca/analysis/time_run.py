@@ -532,8 +532,8 @@ def prepare_run(drive: Drive, engine: Engine, course: Course) -> PreparedRun:
 
 
 def _massless(kinetic: KineticEnergy, motion: Motion) -> NDArray[np.intp]:
-    """Places of the coordinates of the pose without mass: leans of cranks and of the wheel, and what ties or carries the shaft
-    pins, a ring or the far flange of a carrier, where none is given.
+    """Places of the coordinates of the pose whose mass is zero: leans of cranks and of the wheel, a ring or the far flange that
+    ties the shaft pins, cranks where theirs is given as nothing.
     """
     return np.flatnonzero(np.diag(kinetic.mass[0])[: motion.pose.size] == 0.0)
 

@@ -177,9 +177,10 @@ def assemble_influence_matrix(
     lags = lagged_influence(
         width, 2 * count if symmetric_x else count, y_edges, mirrored=symmetric_y, end_factor=end_factor
     )
-    index = np.arange(count)
-    blocks = lags[np.abs(index[:, None] - index)]
-    if symmetric_x:
-        blocks += lags[index[:, None] + index + 1]
-    size = count * (y_edges.size - 1)
-    return np.asarray(blocks.transpose(0, 2, 1, 3).reshape(size, size))
+    index, along = np.arange(count), y_edges.size - 1
+    matrix = np.empty((count, along, count, along))
+    for row, blocks in enumerate(matrix):  # one after the other: the matrix is the largest thing in memory
+        blocks[...] = lags[np.abs(index - row)].swapaxes(0, 1)
+        if symmetric_x:
+            blocks += lags[index + row + 1].swapaxes(0, 1)
+    return matrix.reshape(count * along, count * along)

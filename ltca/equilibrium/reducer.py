@@ -184,7 +184,7 @@ class Reducer:
     ) -> Evaluation:
         """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it.
 
-        `everything` takes all contacts of coupled bodies as candidates to carry (`Evaluation.overlooks`).
+        `everything` takes all contacts that others move as candidates to carry (`Evaluation.overlooks`).
         """
         rows, system = crank_angle.size, ContactSystem(self)
         most = min(POSITIONS_AT_ONCE, system.positions_at_once)
@@ -209,7 +209,7 @@ class Reducer:
         """
         most = min(POSITIONS_AT_ONCE, ContactSystem(self).positions_at_once)
         found = []
-        for rows in np.array_split(np.arange(crank_angle.size), -(-crank_angle.size // most)):
+        for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // most))):
             own = self.take(rows)
             at = ContactSystem(own).respond(*take_positions((crank_angle, pose, start), rows), roughly=False)
             found.append(own._evaluated(with_whole_tangent(at, lever[rows])).tangent)

@@ -65,8 +65,8 @@ class Relief:
         if self._has_ends:
             straight = 0.5 * self.length - self.end_length
             reaches.append(straight + self.end_length * np.sqrt(approach / self.end_depth))
-        high = min(0.5 * self.length, *map(float, reaches))
-        if len(reaches) == 1 or float(self.relief(high)) <= approach:
+        high = min([0.5 * self.length, *map(float, reaches)])
+        if len(reaches) <= 1 or float(self.relief(high)) <= approach:
             return high
         from scipy.optimize import brentq  # 0.2 s to import; one term alone has a closed form
 

@@ -68,9 +68,11 @@ if TYPE_CHECKING:
     from ltca.laws.sliced_contact import SlicedContact
 
 WORKING_MEMORY = 1e8
-"""Memory for the largest array of a block of positions, bytes: the linear system of coupled contacts, of which a few are held."""
+"""Memory for the largest array of a block of positions, bytes: the linear system of contacts, of which a few are held."""
 CANDIDATE_MARGIN = 0.25
-"""Gap within which an open contact of coupled bodies may carry, by the largest overlap of its position."""
+"""Gap, by the largest overlap of its position, within which an open contact may carry that loads of others move: through bodies
+or displaced pins.
+"""
 SETTLED = 1e-7
 """The same of an answer: loads are corrected to first order, and the error left is of its square."""
 SETTLED_IN_MOTION = 1e-5
@@ -159,7 +161,7 @@ class ContactSystem:
     ) -> Linearised:
         """Return contacts at poses, found to first order in what is left of the inner unknowns.
 
-        Contacts of coupled bodies that are far from touching are left out of the linear system unless `everything` is asked for;
+        Contacts that others move, far from touching, are left out of the linear system unless `everything` is asked for;
         `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`. With
         `by_crank` the crank angle is a coordinate behind the pose.
         """
@@ -297,7 +299,7 @@ class Linearised:
     before : Linearised, optional
         The same contacts at the same places, where only the inner unknowns have changed.
     margin : float
-        Gap by the largest overlap within which open contacts of coupled bodies are taken.
+        Gap by the largest overlap within which open contacts that others move are taken.
     by_crank : bool
         Whether the crank angle is a coordinate behind the pose.
 
@@ -463,7 +465,7 @@ class Linearised:
             self._carry_in_slices(state)
 
     def _carry_in_plane(self) -> None:
-        """The same in the plane."""
+        """Loads and their derivatives in the plane."""
         system, e = self.system, self.deformation[:, 0]
         self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
         self.sliced: list[list[SlicedContact]] = []
@@ -485,7 +487,7 @@ class Linearised:
                 self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = found
 
     def _carry_in_slices(self, state: State) -> None:
-        """The same with tilts, moments and their derivatives."""
+        """Loads, moments and their derivatives in slices."""
         system, e = self.system, self.deformation
         self.load = np.zeros(e.shape)
         self.stiffness = np.zeros((3, e.shape[0], e.shape[2]))
@@ -514,7 +516,7 @@ class Linearised:
             self.sliced.append(found)
 
     def _choose(self) -> None:
-        """Choose the contacts of the linear system: those that carry, and of coupled bodies open ones that may."""
+        """Choose the contacts of the linear system: those that carry, and open ones that others may press."""
         system = self.system
         self.every = not system.deforms
         if self.every:
@@ -645,19 +647,20 @@ class Linearised:
     @property
     def _closed(self) -> FloatArray:
         """How deep the correction presses what is open, mm: a roller is pressed where its whole play is."""
-        after = self.deformation[:, 0] + self.moved_by_pins
-        if not self.every:
-            after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
+        after = self.deformation[:, 0] + self.moved_by_pins[:, 0]
+        after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
         for _, bores, _, races in self.system.of_kind:
             after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
         return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
 
     @cached_property
     def moved_by_pins(self) -> FloatArray:
-        """What approaches grow by as displaced pins go where the loads press them, mm, shape (positions, contacts)."""
+        """What approaches, and tilts in slices, grow by as displaced pins go where the loads press them, mm, shape (positions,
+        components, contacts).
+        """
         if self.shifts is None or self.shifts_after is None:
-            return np.zeros(self.overlap[:, 0].shape)
-        return self.members.approaches(self.shifts_after - self.shifts)[:, 0]
+            return np.zeros(self.overlap.shape)
+        return self.members.approaches(self.shifts_after - self.shifts)
 
     @property
     def onward(self) -> Start:
@@ -908,13 +911,12 @@ class Linearised:
 
     @cached_property
     def leaves_out(self) -> NDArray[np.bool_]:
-        """Positions where a contact of coupled bodies that was left out is pressed together after all."""
+        """Positions where a contact that was left out is pressed together after all."""
         found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.deforms or not np.isfinite(self.margin):
             return found
-        reach = self.overlap[:, 0] + self.moved_by_pins
-        if self.system.components > 1:
-            reach = reach + np.abs(self.overlap[:, 1])
+        reach = self.overlap + self.moved_by_pins
+        reach = reach[:, 0] + np.abs(reach[:, 1:]).sum(axis=1)
         for disc, (kinds, yielding) in enumerate(zip(self.system.of_kind, self.yielding, strict=True)):
             pressed = reach[:, kinds[0].start : kinds[2].stop] > (yielding[0] if yielding else 0.0)
             for some, kind in zip(self.chosen[disc][:3], kinds[:3], strict=True):

@@ -372,7 +372,7 @@ def _flexibility(at: Any, part: Pressing) -> tuple[FloatArray, FloatArray]:
     left = at.of_chosen(at.deformation - at.overlap)
     if system.coupled:
         left += np.einsum("bcicj,bcj->bci", whole[:, :, :count, :, :count], part.load)
-    if members is not None and at.shifts is not None and system.model.pins is not None:
+    if members is not None:
         left += at.of_chosen(members.approaches(members.unsettled(at.shifts)))
         members.add_flexibility(whole)
     return whole, left

@@ -102,7 +102,7 @@ def advise(
     drive : Drive
         The drive.
     checks : sequence of Check
-        Of it (`ltca.analysis.verdict.judgement`).
+        Of it (`ltca.drive.members.judgement`).
     crank_angle : array, shape (positions,)
         φ_C at which values are compared, rad.
     torque : float, optional

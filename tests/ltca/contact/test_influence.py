@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -142,3 +144,15 @@ def test_series_for_distant_cells_agrees_with_the_closed_form(monkeypatch):
     # near enough that the terms kept matter (1e-6 and more); the first one left out is of the order (x/Y)⁸/200
     np.testing.assert_allclose(series, closed, atol=1e-7)
     assert not np.array_equal(series, closed)
+
+
+def test_a_matrix_takes_little_more_memory_than_itself():
+    """Gathered at once and turned over it took twice as much."""
+    edges = np.linspace(-1.0, 1.0, 41), np.linspace(-3.0, 3.0, 31)
+    tracemalloc.start()
+    try:
+        matrix = influence_matrix(*edges)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 1.3 * matrix.nbytes

@@ -64,3 +64,7 @@ def test_overlap_ends_where_the_relief_is_the_approach(approach):
 def test_overlap_is_the_whole_length_under_a_deep_approach():
     crowned = LengthProfile(crown_drop=0.004, end_relief_length=1.5, end_relief_depth=0.02)
     assert generator_profile(crowned, LENGTH, RADIUS).overlap_half_length(0.03) == pytest.approx(0.5 * LENGTH)
+
+
+def test_a_cylinder_overlaps_along_its_whole_length():
+    assert Relief(length=LENGTH).overlap_half_length(0.01) == 0.5 * LENGTH
