@@ -151,7 +151,7 @@ def test_a_matrix_takes_little_more_memory_than_itself():
     edges = np.linspace(-1.0, 1.0, 41), np.linspace(-3.0, 3.0, 31)
     tracemalloc.start()
     try:
-        matrix = influence_matrix(*edges)
+        matrix = assemble_influence_matrix(*edges)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
