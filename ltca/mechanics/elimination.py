@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.mechanics.displaced_pins import PinMembers, solved
-from ltca.mechanics.places import Indices, by_rows
+from ltca.mechanics.places import by_rows
 from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gradient_with_crank, turn_with_cages
 
 ROUGHLY_SETTLED = 0.02
@@ -176,7 +176,7 @@ def eliminate_coupled(at: Any) -> None:
     else:
         eliminate_by_disc(at)
         _beside_rollers(at, found)
-    _find_off(at, every.unbalanced, left)
+    _find_off(at, every, left)
 
 
 def _on_pins(at: Any, part: Pressing) -> Pressing:
@@ -213,9 +213,9 @@ def _beside_rollers(at: Any, found: Eliminated) -> None:
         at.tangent = 0.5 * (at.tangent + at.tangent.swapaxes(1, 2))
 
 
-def _find_off(at: Any, unbalanced: FloatArray, left: FloatArray) -> None:
+def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
     """What is left of the deformations where it matters, as lengths."""
-    stiffness, bores, races = at.chosen_stiffness, _positions(at, 1), _positions(at, 3)
+    stiffness, (bores, races) = every.stiffness, every.rolls
     at.off_by = at.of_all(left)
     wanted = np.abs(left).sum(axis=1)
     expected = at.of_chosen(at.deformation)[:, 0] - left[:, 0]
@@ -228,7 +228,7 @@ def _find_off(at: Any, unbalanced: FloatArray, left: FloatArray) -> None:
         wanted[:, places] = np.where(free, both, wanted[:, places])
     matters = (stiffness[0] > 0.0) | (expected > 0.0)
     at.off = np.max(wanted * matters, axis=1, initial=0.0)
-    apart = np.abs(unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
+    apart = np.abs(every.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
     at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
 
 
@@ -389,11 +389,6 @@ def _find_bodies(at: Any) -> None:
         at.bodies = before.bodies
         return
     at.bodies = at.bodies_between()
-
-
-def _positions(at: Any, number: int) -> Indices:
-    """Where the contacts of a kind stand among the chosen."""
-    return np.concatenate([np.arange(own[number].start, own[number].stop) for own in at.at])
 
 
 def loads_of(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
