@@ -43,10 +43,19 @@ def processor_seconds() -> float:
     return time.process_time() + times.children_user + times.children_system
 
 
+CALLED = pytest.StashKey[bool]()
+"""Whether a test was called: one that is skipped has no time."""
+
+
 def pytest_configure() -> None:
     """Take this folder from what programs inherit: its `fem.py` would hide the package from those that tests start."""
     paths = os.environ.get("PYTHONPATH", "").split(os.pathsep)
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path and Path(path) != Path(__file__).parent)
+
+
+def pytest_runtest_call(item: pytest.Item) -> None:
+    """Remember that a test is called."""
+    item.stash[CALLED] = True
 
 
 @pytest.hookimpl(wrapper=True)
@@ -56,10 +65,11 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, Any, Any]:
     try:
         return (yield)
     finally:
-        marks = sorted({mark.name for mark in item.iter_markers()} & {"slow", "nightly"})
-        path = Path(os.environ[FOLDER]) / f"{os.getpid()}.jsonl"
-        with path.open("a", encoding="utf-8") as stream:
-            stream.write(json.dumps([item.nodeid, processor_seconds() - began, marks]) + "\n")
+        if item.stash.get(CALLED, False):
+            marks = sorted({mark.name for mark in item.iter_markers()} & {"slow", "nightly"})
+            path = Path(os.environ[FOLDER]) / f"{os.getpid()}.jsonl"
+            with path.open("a", encoding="utf-8") as stream:
+                stream.write(json.dumps([item.nodeid, processor_seconds() - began, marks]) + "\n")
 
 
 def set_of(marks: list[str]) -> str:
@@ -117,7 +127,7 @@ def text_of(run: Measured, known: dict[str, float]) -> str:
         f"processor_seconds = {run.processor:.0f}",
     ]
     lines += [
-        f"{name} = {{ tests = {count[name]}, processor_seconds = {seconds[name]:.0f} }}"
+        f"{name}_set = {{ tests = {count[name]}, processor_seconds = {seconds[name]:.0f} }}"
         for name in ("quick", "slow", "nightly")
         if count[name]
     ]

@@ -435,7 +435,7 @@ class Linearised:
             if system.coupled:  # a fair share of a rigid overlap
                 e = e.copy()
                 e[:, 0] *= np.where(e[:, 0] > 0.0, 0.5, 1.0)
-        elif system.deforms:
+        elif system.deforms and (system.coupled or not self.held):
             e = np.where((self._within() | (e[:, 0] > 0.0))[:, None], e, self.overlap)
         if not system.coupled and system.deforms:  # nothing but the two contacts of a roller deforms
             e = e.copy()
@@ -524,6 +524,8 @@ class Linearised:
             self.count = system.contacts
             return
         carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
+        if self.before is not None:
+            carries[self.row, self.before.contacts] = True
         self.chosen = []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
@@ -647,7 +649,9 @@ class Linearised:
     @property
     def _closed(self) -> FloatArray:
         """How deep the correction presses what is open, mm: a roller is pressed where its whole play is."""
-        after = self.deformation[:, 0] + self.moved_by_pins[:, 0]
+        after = self.deformation[:, 0].copy()
+        if not self.held:  # where pins are held, what they will press is found by those that are not
+            after += self.moved_by_pins[:, 0]
         after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
         for _, bores, _, races in self.system.of_kind:
             after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
@@ -873,6 +877,10 @@ class Linearised:
             )
             if not self.system.deforms:
                 break
+            part = fraction[:, None, None]
+            found.supposed = self.supposed + part * (self.load + self.of_all(self.change) - self.supposed)
+            if not (self.held or self.system.coupled):
+                break
             end = found.along(self.step)
             far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
             far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
@@ -889,15 +897,23 @@ class Linearised:
         return found
 
     @cached_property
+    def supposed(self) -> FloatArray:
+        """Loads φ with which the deformations are d − W φ: those at them where they have not been corrected, N."""
+        return self.load
+
+    @cached_property
     def step(self) -> FloatArray:
         """Correction of the deformations of all contacts."""
         return self.after - self.deformation
 
     def along(self, step: FloatArray) -> FloatArray:
-        """Return the slope of the energy of the inner unknowns along a step of the deformations, rᵀ K de, N·mm."""
-        if not self.system.deforms:
+        """Return the slope of the energy of the inner unknowns along a step of the deformations, N·mm.
+
+        With deformations e = d − W φ it is Σ U(e) + ½ φᵀ W φ, convex in φ, and its slope (f(e) − φ)ᵀ de.
+        """
+        if self.system.coupled or not self.system.deforms:
             return np.zeros(step.shape[0])
-        return np.asarray((self.off_by * loads_of(self.stiffness, step[..., None])[..., 0]).sum(axis=(1, 2)))
+        return np.asarray(((self.load - self.supposed) * step).sum(axis=(1, 2)))
 
     @cached_property
     def yielding(self) -> list[list[FloatArray]]:
