@@ -113,7 +113,7 @@ class Separation:
     """Separation of two surfaces about the point where they touch, interpolated between one of some fixed places and the next."""
 
     effective_radius: float  # ρ, mm, by which the width is expected
-    departure: Callable[[int, FloatArray], FloatArray]  # at a place, by its number, over the distance along the tangent, mm
+    departure: Callable[[int, FloatArray], FloatArray]  # at a numbered place, over the distance along the tangent, mm
     place: int = 0
     part: float = 0.0  # fraction of the way from `place` to the next one
 

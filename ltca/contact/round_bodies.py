@@ -18,7 +18,7 @@ NARROW = 0.01
 
 
 def compressed_cylinder(radius: float, half_width: float) -> float:
-    """Return ln(4R/b) − 3/4, the mean approach of either load to the centre, by the unit (Johnson, Eq. 5.57, less 1/4)."""
+    """Return the yield of a cylinder at each of two opposite loads, ln(4R/b) − 3/4 of the unit (Johnson, Eq. 5.57, less 1/4)."""
     return float(np.log(4.0 * radius / half_width) - 0.75)
 
 
