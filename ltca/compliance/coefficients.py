@@ -1,5 +1,4 @@
-"""Influence coefficients of the bodies by finite elements: approaches, and tilts of solid bodies, by loads on patches at
-stations.
+"""Influence coefficients of the bodies by finite elements: approaches, and tilts of solid bodies, by unit loads at stations.
 
 Of each entry the half-plane's logarithm is taken off; the rest is smooth when load and place move together, and is interpolated,
 and the logarithm of the actual places added again (docs/theory/coefficients.md, solid_bodies.md).

@@ -1,7 +1,6 @@
 """Contacts of a disc that feel each other through the bodies (`fe` and `hybrid`): δ_i(q) = w_i(F_i) + Σ_j C_ij F_j.
 
-w is the law of the near field (`ltca.compliance.near_field`), C of `ltca.compliance.coefficients`; `ltca.mechanics.contacts`
-solves.
+w is the law of the near field (`ltca.compliance.near_field`), C is in `ltca.compliance.coefficients`.
 """
 
 from __future__ import annotations

@@ -125,10 +125,9 @@ class BodyParts:
     ) -> BodyParts:
         """Return the parts of approaches by loads, or of `tilts` by moments, whose unit is 12 by the square of the length.
 
-        With A = smooth + κ (−ln(b/2) + 1/4) of a patch, plane strain holds κ (ln(2D/b) + 1/4), so smooth − κ ln D is left; a
-        half-space holds `finite_length_approach`, of solid bodies `projected_on_half_space` with the images of their ends, both
-        at the half-width of half the drive's load T/(e u). Of one slice comes off what leaves an aligned line what it has with
-        many.
+        With A = smooth + κ (−ln(b/2) + 1/4) of a patch, plane strain holds κ (ln(2D/b) + 1/4), so smooth − κ ln D is left;
+        half-spaces hold `finite_length_approach`, of solid bodies `projected_on_half_space` with images of their ends, at the
+        half-width of half the drive's load T/(e u). Of one slice comes off the difference of an aligned line to that of many.
         """
         parts, bearing, shaft, c = drive.materials, drive.crank_bearing, drive.pin_shaft, coefficients
         place, thickness, length = geometry.placement, drive.disc.thickness, drive.roller_length
@@ -198,11 +197,10 @@ class BodyParts:
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
-    """Return the yield at a contact of a cylinder carried evenly by its section, A/κ_l + ln(b/2) − 1/4, in mm under the
-    logarithm.
+    """Return the yield of a cylinder carried evenly by its section, in mm under the logarithm: A/κ_l + ln(b/2) − 1/4.
 
-    Kolosov's potentials for an even body force give A = κ_l (ln(2R/b) + 1/4 − (κ + 2)/(2(κ + 1))) to (b/R)², κ_l = 2(1 −
-    ν²)/(πEt); κ = 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress (docs/theory/coefficients.md).
+    Kolosov's potentials for an even body force give A = κ_l (ln(2R/b) + 1/4 − (κ + 2)/(2(κ + 1))) to (b/R)², with the logarithm's
+    factor κ_l and κ = 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress (docs/theory/coefficients.md).
 
     >>> round(carried_cylinder(1.0, 0.3), 6)
     -0.678571

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 def pressures_of_law(
     law: ContactLaw, ends: ContactKind | None, approach: FloatArray, effective_radius: FloatArray
 ) -> KindPressures:
-    """Return pressures and half-widths of contacts at approaches with what is behind them, mm; no `ends` in plane strain."""
+    """Return pressures and half-widths at approaches, mm, seats and beams behind included; `ends` None in plane strain."""
     law, approach = law.surface(approach, effective_radius)
     closed = approach > 0.0
     mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))

@@ -68,7 +68,7 @@ class DiscResponse:
     friction: FloatArray | None = None  # forces of pins along their tangents, N
     leaning_pins: LeaningPairs | None = None  # in slices
     leaning_holes: LeaningPairs | None = None
-    deformation: FloatArray | None = None  # of coupled contacts' laws, mm, (positions, components, contacts)
+    deformation: FloatArray | None = None  # that coupled contacts' own laws take, mm, (positions, components, contacts)
 
     @property
     def pin_forces(self) -> ComplexArray:

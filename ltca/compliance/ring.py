@@ -139,8 +139,7 @@ def _of_slot(drive: Drive) -> FloatArray:
 def slot_yield(half_arc: float, poisson_ratio: float, datum: float) -> FloatArray:
     """Return the radial and tangential displacement of a seat in an infinite plate by a unit force on its wall, times E b.
 
-    The mean weighted by the pressure on twice `half_arc`, rad, relative to the circle of `datum` radii. Of 2F/(πrb) cos θ on half
-    a seat:
+    The mean weighted by the pressure over twice `half_arc`, rad, relative to the circle of `datum` radii; on half a seat:
 
     >>> print(slot_yield(0.5 * pi, 0.3, 3.0).round(3))
     [0.837 0.802]

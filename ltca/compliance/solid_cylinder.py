@@ -1,5 +1,4 @@
-"""Yield of a solid cylinder with free ends at a contact beyond plane strain, κ e(ν, R/t) and 12/t² κ e′(ν, R/t), κ = 2(1 −
-ν²)/(πEt).
+"""Yield of a solid cylinder with free ends at a contact beyond plane strain, κ e(ν, R/t) and 12/t² κ e′(ν, R/t).
 
 From finite elements in three dimensions (``benchmarks/solid_cylinder.py`` prints the tables; docs/theory/solid_bodies.md).
 """

@@ -133,7 +133,7 @@ class BackedLaw(ContactLaw):
 
 
 def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of wheel pins of a drive of one disc: `contact`, which counts a sleeve down to `depth`, mm, seats, beams."""
+    """Return the law of wheel pins of a drive of one disc, seats and beams behind `contact`, which counts sleeves to `depth`."""
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
         return contact

@@ -1,8 +1,7 @@
 """Stiffness of rolling bearings in five directions, in closed form: rows with contact angles, alone or in pairs.
 
-Linearised about the preload a row has k_n Σ g gᵀ, g = (n, p × n) (Jones, J. Basic Eng. 82 (1960) 309; Harris & Kotzalas,
-Essential Concepts of Bearing Technology, 5th ed., ch. 7 and 11; Lim & Singh, J. Sound Vib. 139 (1990) 179);
-docs/how-to/supports.md.
+Linearised about the preload a row has k_n Σ g gᵀ, g = (n, p × n) (docs/how-to/supports.md; Jones, J. Basic Eng. 82 (1960) 309;
+Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., ch. 7, 11; Lim & Singh, J. Sound Vib. 139 (1990) 179).
 """
 
 from __future__ import annotations
@@ -89,7 +88,7 @@ class SideLaw:
 
     @classmethod
     def of_preload(cls, both: float, force: float | None, displacement: float | None) -> SideLaw:
-        """Return the law of a bearing with a stiffness k of both sides, N/mm, pressed together by P, N, or δ, mm."""
+        """Return the law of two sides of k/2 each, N/mm, pressed together by P, N, or δ, mm: one lifts off at 2P = kδ."""
         lift_off = both * displacement if displacement is not None else 2.0 * (force or 0.0)
         return cls(stiffness=both, lift_off=lift_off, beyond=1.0 / both, preload_load=lift_off)
 

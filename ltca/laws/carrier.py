@@ -1,6 +1,6 @@
 """Motion of the far flange of a carrier against the near one: posts as beams, flanges as strips that bend between posts.
 
-Flanges stay parallel. A post of length L under a force F across turns its ends by c_i M_i, M₁ + M₂ = F L; by Castigliano's
+Flanges stay parallel, κ is Cowper's (1966). A post of length L under a force F across turns its ends by c_i M_i, M₁ + M₂ = F L; by Castigliano's
 theorem Δ = F [L³/3EI + L/κGA + c₂ L²] − M₁ L [L/2EI + c₂], M₁ = F L (L/2EI + c₂)/(L/EI + c₁ + c₂) (docs/how-to/carrier.md).
 """
 
@@ -17,7 +17,7 @@ from ltca.drive.parts import Drive
 def post_stiffness(
     length: float, diameter: float, youngs_modulus: float, poisson_ratio: float, ends: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[float, float]:
-    """Return the force by displacement, N/mm, and the moment by twist, N·mm/rad, of one post, with Cowper's (1966) shear.
+    """Return force by displacement, N/mm, and moment by twist, N·mm/rad, of a post whose `ends` turn by moments, rad/(N·mm).
 
     >>> across, _ = post_stiffness(1e4, 10.0, 2e5, 0.3)  # a long post between rigid flanges, 12 EI/L³
     >>> print(f"{across / (12.0 * 2e5 * pi * 10.0**4 / 64.0 / 1e12):.4f}")

@@ -1,8 +1,7 @@
-"""Load–approach law of line contacts that are crowned or relieved along their length, U = E* L δ² exp(−m(X, ln ρ)), X =
-ln(ρδ/L²).
+"""Load–approach law of line contacts that are crowned or relieved along their length, U = E* L δ² exp(−m(X, ln ρ)).
 
-m is a quintic spline along X and a polynomial through Chebyshev nodes of ln ρ; load and stiffness are derivatives of U at a held
-radius. Beyond the table m is straight, a power law: crowned contacts at light load are points, F ∝ δ^1.5, m' = −1/2.
+m is a quintic spline along X = ln(ρδ/L²), a polynomial through Chebyshev nodes of ln ρ, and beyond the table straight, a power
+law: crowned contacts at light load are points, F ∝ δ^1.5, m' = −1/2. Load and stiffness are derivatives of U at a held radius.
 """
 
 from __future__ import annotations

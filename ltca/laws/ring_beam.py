@@ -39,8 +39,7 @@ class RingBeam:
         return self.height / self._wall
 
     def free(self, seats: FloatArray, radius: float) -> FloatArray:
-        """Return displacements of seats of a free ring beyond their rigid motion by unit forces there, mm/N, (seats, 2, seats,
-        2).
+        """Return displacements of seats beyond their rigid motion by unit forces there, mm/N, shape (seats, 2, seats, 2).
 
         Opposite forces stretch a thin ring by (π/4 − 2/π) F R³/EI:
 

@@ -69,8 +69,7 @@ def quintic(coefficients: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatA
 class SlendernessCurve:
     """Smooth positive curve over X = ln(ρδ/L²), continued beyond its knots with value, slope and curvature.
 
-    Toward X → −∞ as a + b t + c ln(1 + t/T), as slender contacts approach; toward ∞ as the exponential of a nearly linear
-    function.
+    Toward X → −∞ as a + b t + c ln(1 + t/T), as slender contacts approach; toward ∞ as the exponential of nearly a line.
     """
 
     start: float  # first knot

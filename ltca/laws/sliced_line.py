@@ -1,10 +1,9 @@
-"""Line contacts in slices along their width: load and moment by approach and tilt, for any lead and profile
-(docs/theory/width.md).
+"""Line contacts in slices along their width, of any lead and profile: load and moment by approach and tilt.
 
 Slice i of n, l = L/n long, carries F_i = ∫ q(δ + θ z − h(z) − u_i) dz, u_i = ∂V/∂F_i, V = Σ a_|i−j|(b/l) F_i F_j/(2π E* l), with
 q of plane strain (datum D), Love's coefficients a_k of strips less what q has, and b of the mean line load Σ F²/(l Σ F). The end
-slices are softer by ε_n(b/l), tabulated so that an aligned line has the load of `ltca.laws.line_contact`. Newton's last step is
-taken along the slopes without another evaluation, to round-off.
+slices are softer by ε_n(b/l), tabulated so that an aligned line has the load of `ltca.laws.line_contact` (docs/theory/width.md).
+Newton's last step is taken along the slopes without another evaluation, to round-off.
 """
 
 from __future__ import annotations

@@ -1,5 +1,4 @@
-"""Harmonics of a sleeve less those of an infinite body: a ring under pₙ cos nθ inside, at a, and a line force in line outside, at
-R.
+"""Harmonics of a sleeve less those of an infinite body: pₙ cos nθ on the inside, at a, and a line force outside, at R.
 
 Michell's stress functions r^±n, r^(2±n), Lamé's for n = 0. The force at θ = 0 is F/2πRL of n = 0, F/πRL of others; displacements
 are outward, in a/4μ. Differences from infinite body and full circle fall like (a/R)ⁿ or faster, so few harmonics are enough.
