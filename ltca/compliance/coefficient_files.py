@@ -62,11 +62,7 @@ def has_coefficients(drive: Drive, bodies: Bodies = "plane") -> bool:
 
 
 def find_coefficients(
-    drive: Drive,
-    files: Sequence[Path] | None = None,
-    *,
-    engine: str = "hybrid",
-    bodies: Bodies = "plane",
+    drive: Drive, files: Sequence[Path] | None = None, *, engine: str = "hybrid", bodies: Bodies = "plane"
 ) -> InfluenceCoefficients:
     """Return the coefficients of a drive of one disc from files of ``cyclo derive``, or without files kept or newly derived."""
     require(drive, engine)
@@ -76,11 +72,7 @@ def find_coefficients(
 
 
 def find_case_coefficients(
-    cases: Mapping[str, Drive],
-    files: Sequence[Path] = (),
-    *,
-    engine: str = "hybrid",
-    bodies: Bodies = "plane",
+    cases: Mapping[str, Drive], files: Sequence[Path] = (), *, engine: str = "hybrid", bodies: Bodies = "plane"
 ) -> dict[str, InfluenceCoefficients]:
     """Return the coefficients by case, of several discs by case and disc; every file serves a case and every case has one."""
     for drive in cases.values():

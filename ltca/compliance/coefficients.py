@@ -20,12 +20,7 @@ from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_
 from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import (
-    Boundary,
-    boundaries_of,
-    turned_boundaries,
-    weights_of,
-)
+from ltca.geometry.boundary_stations import Boundary, boundaries_of, turned_boundaries, weights_of
 from ltca.reading.coefficient_file import quality_warning, read_coefficients, require_places, require_same_bodies
 from ltca.reading.coefficient_schema import flank_clustering, is_solid
 
@@ -217,10 +212,7 @@ def load_coefficients(
     found = _coefficients_of_dataset(data, drive, shared=shared)
     stress = read_stress_coefficients(data, (found.flank, *found.bores, *found.holes))
     return replace(
-        found,
-        stress=stress,
-        code_hash=str(data.attrs.get("code_hash", "")),
-        warning=quality_warning(data, str(path)),
+        found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")), warning=quality_warning(data, str(path))
     )
 
 

@@ -74,12 +74,7 @@ class CoupledCompliance:
 
     @classmethod
     def of_drive(
-        cls,
-        drive: Drive,
-        coefficients: InfluenceCoefficients,
-        near_field: NearField,
-        *,
-        hole_near_field: bool = True,
+        cls, drive: Drive, coefficients: InfluenceCoefficients, near_field: NearField, *, hole_near_field: bool = True
     ) -> CoupledCompliance:
         """Return the model of a drive of one disc; without `hole_near_field` the springs of the shaft pins stand for all."""
         fingerprint = drive.shape_fingerprint(coefficients.bodies)
@@ -88,10 +83,7 @@ class CoupledCompliance:
             raise DriveError([f"{other}: must be those of {drive.name}, shape {fingerprint}"])
         yields = hole_near_field and shaft_pins_yield(drive)
         contacts = near_field_contacts(
-            drive,
-            near_field,
-            rigid_shaft_pins=hole_near_field and not yields,
-            solid=coefficients.plane == SOLID,
+            drive, near_field, rigid_shaft_pins=hole_near_field and not yields, solid=coefficients.plane == SOLID
         )
         geometry, place = contacts.geometry, contacts.geometry.placement
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)

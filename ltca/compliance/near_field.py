@@ -1,8 +1,7 @@
 """Near fields of all contacts of a drive, and the yield of bodies beyond them: the diagonal of the body part C.
 
-Finite-element approaches hold the near field of the law, plane strain (`fe`) or a half-space of finite length (`hybrid`), too: it
-comes off once, as that of a load even over the body's thickness, whatever presses. With the law's length it would cancel, and
-short rollers be as stiff as long ones. Solid bodies: docs/theory/solid_bodies.md.
+Finite-element approaches hold the near field of the law as well: it comes off once, as that of a load even over the body's
+thickness. With the law's length it would cancel, and short rollers be as stiff as long ones (docs/theory/solid_bodies.md).
 """
 
 from __future__ import annotations
@@ -235,14 +234,7 @@ def finite_length_approach(length: float, half_width: float) -> float:
 
 def redistributed_approach(length: float, half_width: float, free_ends: tuple[FreeEnds, ...] = ()) -> float:
     """Return how much less than under an even load an aligned line in slices approaches, times E/(1 − ν²) per load, 1/mm."""
-    slices = ALIGNED_SLICES
-    line = sliced.SlicedLine(
-        length=length,
-        contact_modulus=1.0,
-        slices=slices,
-        relief=np.zeros(sliced.slice_heights(length, slices).shape),
-        free_ends=free_ends,
-    )
+    line = sliced.SlicedLine.straight(length, 1.0, ALIGNED_SLICES, free_ends)
     load = 0.25 * np.pi * half_width**2 * length
     even, _ = projected_on_half_space(length, half_width, free_ends)
     approach = start = even * load + half_width**2 / 8.0

@@ -1,8 +1,7 @@
 """Flexibility of what holds pins, u = −S f with one symmetric S: beams under several discs, and the ring of the pin wheel.
 
-Displacements of wheel pins are in the turning wheel. Bending by a disc's own force is in the law of its contact
-(`ltca.laws.backed`), but in slices, where pins lean: leans are kept as displacements at half the thickness, moments as forces
-there, behind those of all discs, and all that a beam bends is in S.
+Displacements of wheel pins are in the turning wheel. In slices pins lean: leans stand as displacements at half the thickness,
+moments as forces there, behind those of all discs. Bending by a disc's own force is in S there, else in `ltca.laws.backed`.
 """
 
 from __future__ import annotations

@@ -46,18 +46,16 @@ def pressures_in_plane(
     """Return pressures and half-widths in the plane, of pins and rollers at approaches, mm, of shaft pins by their loads."""
     kinds, (_, outer_radius, hole_radius, inner_radius) = contacts.kinds, contacts.contact_laws
     holes, _ = contacts.hole_law.approach_at_load(response.hole_load, hole_radius)
-    each = (
-        pressures_of_law(law, kind if ends else None, approach, radius)
-        for law, kind, approach, radius in (
-            (contacts.pin_law, kinds.pins, pins, response.flank.effective_radius),
-            (contacts.outer_law, kinds.outer, outer, outer_radius),
-            (contacts.inner_law, kinds.inner, inner, inner_radius),
-            (contacts.hole_law, kinds.holes, holes, hole_radius),
-        )
-    )
-    at_pins, in_bores, on_races, at_holes = each
+
+    def of(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
+        return pressures_of_law(law, kind if ends else None, approach, radius)
+
     return ContactPressures(
-        pins=at_pins, outer=in_bores, inner=on_races, holes=at_holes, rigid_shaft_pins=contacts.rigid_shaft_pins
+        pins=of(contacts.pin_law, kinds.pins, pins, response.flank.effective_radius),
+        outer=of(contacts.outer_law, kinds.outer, outer, outer_radius),
+        inner=of(contacts.inner_law, kinds.inner, inner, inner_radius),
+        holes=of(contacts.hole_law, kinds.holes, holes, hole_radius),
+        rigid_shaft_pins=contacts.rigid_shaft_pins,
     )
 
 
@@ -77,14 +75,12 @@ def pressures_in_slices(
     of_holes, radius = holes.contact.line_load, place.hole_effective_radii
     if shaft_pins_on_springs:
         of_holes = _between_ends(kinds.holes, of_holes, holes.contact.load, radius)
-    found = (
-        _of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
-        _of_slices(kinds.outer, rollers.outer.line_load, place.outer_effective_radii, has_ends),
-        _of_slices(kinds.inner, rollers.inner.line_load, place.inner_effective_radii, has_ends),
-        _of_slices(kinds.holes, of_holes, radius, has_ends),
-    )
     return ContactPressures(
-        pins=found[0], outer=found[1], inner=found[2], holes=found[3], rigid_shaft_pins=rigid_shaft_pins
+        pins=_of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
+        outer=_of_slices(kinds.outer, rollers.outer.line_load, place.outer_effective_radii, has_ends),
+        inner=_of_slices(kinds.inner, rollers.inner.line_load, place.inner_effective_radii, has_ends),
+        holes=_of_slices(kinds.holes, of_holes, radius, has_ends),
+        rigid_shaft_pins=rigid_shaft_pins,
     )
 
 
@@ -94,14 +90,7 @@ def _between_ends(
     """Line loads that add up to the same loads, shaped as those of aligned lines of finite length."""
     slices = line_load.shape[-2]
     approach, _ = LineContactLaw(kind.length, kind.contact_modulus).approach_at_load(load, effective_radius)
-    relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
-    line = sliced.SlicedLine(
-        length=kind.length,
-        contact_modulus=kind.contact_modulus,
-        slices=slices,
-        relief=relief,
-        free_ends=kind.free_ends,
-    )
+    line = sliced.SlicedLine.straight(kind.length, kind.contact_modulus, slices, kind.free_ends)
     shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
     total = kind.length / slices * sliced.slice_means(shaped).sum(axis=-1)
     scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)

@@ -1,8 +1,7 @@
 """Flexibility of the ring of the pin wheel at the seats of its pins: a curved beam in closed form, or plane finite elements.
 
-A file of elements, from the cache or derived once for each shape, is for E b = 1 N/mm without bolts. The yield that the law of a
-loose pin in its slot has as well comes off in closed form (docs/theory/ring_elements.md): by Michell's solution u = π r² b/4μ (2
-p₀² C₀ + Σ pₙ² Cₙ) of the pressure p = Σ pₙ cos nθ of a unit force, and the same with sines.
+A file of elements, from the cache or derived once for each shape, is for E b = 1 N/mm without bolts. Off comes the yield that the
+law of a loose pin in its slot has as well, u = π r² b/4μ (2 p₀² C₀ + Σ pₙ² Cₙ) by Michell (docs/theory/ring_elements.md).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Contact grids that fit: shapes in steps of half-width and reach, and the pressure of a contact on the one that fits it best.
 
 Influence matrices depend on the shape of a grid alone: half-width and reach are rounded to steps of 5 % (rungs), so that few
-matrices serve all contacts of a drive. The rung follows from the half-width expected at the approach, not from earlier
-solutions.
+serve all contacts of a drive. The rung follows from the half-width expected at the approach, not from earlier solutions.
 """
 
 from __future__ import annotations

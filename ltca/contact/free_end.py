@@ -1,8 +1,8 @@
 """Free ends: bodies that stop where the contact stops, by images of the load in the end planes (docs/theory/solid_contact.md).
 
-The image cancels the shear stress on a face and doubles the normal one (de Mul, Kalker and Fredriksson, J. Tribol. 108 (1986)
-140, after Hetényi); R. Guilbault (J. Tribol. 133 (2011) 031402) covers that by an overload factor. Of one body images count by
-its share of the compliance. The kernel is positive definite on one side, so matrices stay so for every factor ≥ 0.
+An image cancels the shear on a face and doubles the normal stress (de Mul, Kalker and Fredriksson, J. Tribol. 108 (1986) 140,
+after Hetényi); R. Guilbault (J. Tribol. 133 (2011) 031402) covers that by an overload factor. Of one body it counts by its
+compliance.
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Contact of two half-spaces over a rectangular patch, |y| ≤ length/2 along the width: grid, solution, loads and pressures.
 
-Pressure is constant in each cell, displacement and separation are cell means (Galerkin): the solution is the minimum of the
-exact potential over such pressures, and the error of the energy is quadratic in theirs. x cells are uniform, with the expected
-edge of the contact on a cell edge; y cells shrink toward the ends, where pressure is singular and the contact wider.
+Pressure is constant in each cell, displacement and separation are cell means (Galerkin): the error of the energy is quadratic in
+that of the pressures. x cells are uniform, with the expected edge on a cell edge; y cells shrink toward singular ends.
 """
 
 from __future__ import annotations

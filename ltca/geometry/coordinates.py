@@ -1,12 +1,8 @@
-"""The coordinates of a pose and their places: discs, cranks that yield, the wheel if its bearing yields, the angle of the
-wheel.
+"""The coordinates of a pose at a held crank angle and their places, in mm and rad (docs/theory/balance.md).
 
-A pose of one disc at a held crank angle is q = (x, y, rotation of the disc; x, y of each crank that yields; twist of each
-crank; lean of each crank and of the disc; x, y and lean of the wheel; x, y, rotation of the ring of the tips or of the far
-flange; wheel angle, the deviation from φ_C/u), in mm and rad, of which only those that yield are there. Displacements are from
-the nominal place in the fixed frame. The poses of several discs follow each other, with one wheel.
-
-A lean is dx/dz + i dy/dz of a part along its axis, about the middle of the disc: with the rotation vector ω it is (ω_y, −ω_x).
+q = (x, y, rotation of the disc; x, y of each crank; twist of each; lean of each and of the disc; x, y and lean of the wheel; x,
+y, rotation of ring or far flange; wheel angle, its deviation from φ_C/u) as far as they yield; several discs follow each other,
+with one wheel. A lean is dx/dz + i dy/dz about the middle of the disc: with the rotation vector ω it is (ω_y, −ω_x).
 """
 
 from __future__ import annotations

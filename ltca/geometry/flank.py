@@ -1,9 +1,7 @@
-"""Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1), in the frame of the
-disc.
+"""Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1), in the frame of the disc.
 
-As designed it is the inward parallel curve of the trochoid c(θ) = (R_C + ΔR_C) e^{iθ} − e e^{iuθ} of a pin centre at the
-distance r_P + Δr_P, so both share normals and nearest points; a root lies at θ = 0. With a deviation δ(θ) the flank is F = c −
-(offset − δ) n, no parallel curve, and normals and nearest points are those of F.
+As designed it is parallel to the trochoid of a pin centre, so both share normals and nearest points; a root lies at θ = 0. With a
+deviation δ(θ) it is F = c − (offset − δ) n, no parallel curve, and normals and nearest points are those of F.
 """
 
 from __future__ import annotations
@@ -117,7 +115,7 @@ class FlankProfile:
         return self.at(unit(parameter))
 
     def at(self, direction: ComplexArray) -> CurvePoints:
-        """Return the design trochoid as `locus` does, at e^{iθ}."""
+        """Return the design trochoid, (R_C + ΔR_C) e^{iθ} − e e^{iuθ} turned with the flank, as `locus` does, at e^{iθ}."""
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))

@@ -2,9 +2,8 @@
 
 The farthest wheel angle at which no pair interferes is found by successive linear programmes in the poses of the discs (joined
 where wheel or cranks are loose in their bearings): gaps are linearised, g − ∇δ·d ≥ −t, the overlap t is made least, then the
-wheel turned as far as they allow. Arcs of races and holes are convex, so their tangents at earlier poses remain bounds: a
-farthest pose may lie where an arc and the turning have one tangent. Leans join the poses of parts in slices that stand askew.
-The play of preloaded parts is at the pose of least overlap; definition and error over a turn: docs/theory/conventions.md.
+wheel turned as far as they allow. Tangents of the arcs of races and holes at earlier poses remain bounds, as arcs are convex: the
+farthest pose may lie where arc and turning have one tangent. Definition and error over a turn: docs/theory/conventions.md.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Motion of the far flange of a carrier against the near one: posts as beams, flanges as strips that bend between posts.
 
-Flanges stay parallel, κ is Cowper's (1966). A post of length L under a force F across turns its ends by c_i M_i, M₁ + M₂ = F L; by
-Castigliano's theorem Δ = F [L³/3EI + L/κGA + c₂ L²] − M₁ L [L/2EI + c₂], M₁ = F L (L/2EI + c₂)/(L/EI + c₁ + c₂).
+Flanges stay parallel, κ is Cowper's (1966). A post of length L under a force F across turns its ends by c_i M_i, M₁ + M₂ = F L:
+by Castigliano's theorem Δ = F [L³/3EI + L/κGA + c₂ L²] − M₁ L [L/2EI + c₂], M₁ = F L (L/2EI + c₂)/(L/EI + c₁ + c₂).
 """
 
 from __future__ import annotations

@@ -1,8 +1,7 @@
 """Load–approach law of a conforming seat: a round pin in a bore that is hardly larger, without friction, plane strain.
 
-Pin and bore are circles of the radius a = √(r r_s) under p = p₀ + Σ pₙ cos nθ (Michell), the pin balanced by a uniform body
-force, the bore in an infinite body measured by the mean displacement of the datum circle: docs/theory/seats.md. The first
-harmonic is a spring, the only part that depends on the datum. Finite displacements, friction and the outer boundary are left out.
+Pin and bore are circles of the radius a = √(r r_s) under p = p₀ + Σ pₙ cos nθ (Michell; docs/theory/seats.md). The first harmonic
+is a spring, the only part that depends on the datum. Finite displacements and the outer boundary of the bore's body are left out.
 """
 
 from __future__ import annotations
@@ -71,14 +70,7 @@ class ConformingLaw:
 
     @classmethod
     def of_bodies(
-        cls,
-        *,
-        pin: Material,
-        bore: Material,
-        pin_radius: float,
-        bore_radius: float,
-        datum_radius: float,
-        length: float,
+        cls, *, pin: Material, bore: Material, pin_radius: float, bore_radius: float, datum_radius: float, length: float
     ) -> ConformingLaw:
         """Return the law of a pin in a bore, relative to the circle of `datum_radius` about it; lengths in mm."""
         if not datum_radius >= bore_radius:

@@ -85,11 +85,7 @@ class ProfiledTable:
 
 @cache
 def profiled_table(
-    profile: Relief,
-    smallest_radius: float,
-    largest_radius: float,
-    cells: int = _CELLS,
-    nodes: int = _NODES,
+    profile: Relief, smallest_radius: float, largest_radius: float, cells: int = _CELLS, nodes: int = _NODES
 ) -> ProfiledTable:
     """Tabulate a profiled line contact for effective radii between two, mm, kept in the process."""
     if not 0.0 < smallest_radius <= largest_radius:
@@ -204,11 +200,7 @@ class ProfiledLineContactLaw(ContactLaw):
         # The curvature decays within about one unit of X, so the load stays continuously differentiable.
         fade = np.exp(-np.abs(beyond))
         run = np.abs(beyond) - 1.0 + fade
-        curve = (
-            value + first * beyond + second * run,
-            first + second * np.sign(beyond) * (1.0 - fade),
-            second * fade,
-        )
+        curve = (value + first * beyond + second * run, first + second * np.sign(beyond) * (1.0 - fade), second * fade)
         return np.where(closed, delta, 0.0), radius, curve
 
 

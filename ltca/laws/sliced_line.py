@@ -1,9 +1,8 @@
 """Line contacts in slices along their width, of any lead and profile: load and moment by approach and tilt.
 
-Slice i of n, l = L/n long, carries F_i = ∫ q(δ + θ z − h(z) − u_i) dz, u_i = ∂V/∂F_i, V = Σ a_|i−j|(b/l) F_i F_j/(2π E* l), with
-q of plane strain (datum D), Love's coefficients a_k of strips less what q has, and b of the mean line load Σ F²/(l Σ F). The end
-slices are softer by ε_n(b/l), tabulated so that an aligned line has the load of `ltca.laws.line_contact` (docs/theory/width.md).
-Newton's last step is taken along the slopes without another evaluation, to round-off.
+Slice i, l = L/n long, carries F_i = ∫ q(δ + θ z − h(z) − u_i) dz, u_i = ∂V/∂F_i, V = Σ a_|i−j|(b/l) F_i F_j/(2π E* l), with q of
+plane strain, Love's a_k of strips less what q has, and b of the mean line load Σ F²/(l Σ F); end slices are softer by ε_n(b/l),
+tabulated for the load of an aligned line (docs/theory/width.md). Newton's last step is taken along the slopes, to round-off.
 """
 
 from __future__ import annotations
@@ -125,6 +124,14 @@ class SlicedLine:
     overlap: float = 0.0  # compliance of the line that the sleeve's law has as well, mm/N (`BackedLaw`)
     ends: FloatArray | None = None  # ε over ln(b/l), shape (6, pieces); default `softer_ends`
     free_ends: tuple[FreeEnds, ...] = ()  # of bodies that end at the line's ends or beyond
+
+    @classmethod
+    def straight(
+        cls, length: float, contact_modulus: float, slices: int, free_ends: tuple[FreeEnds, ...] = ()
+    ) -> SlicedLine:
+        """Return the law of lines without lead or profile."""
+        relief = np.zeros((slices, POINTS))
+        return cls(length=length, contact_modulus=contact_modulus, slices=slices, relief=relief, free_ends=free_ends)
 
     def respond(
         self,

@@ -17,7 +17,7 @@ from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.free_end import FreeEnds, remaining_bulge
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchPressure
-from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
+from ltca.laws.sliced_contact import slice_heights, slice_means
 from ltca.laws.sliced_line import SlicedLine
 
 NODES = 61
@@ -151,8 +151,7 @@ def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
 @cache
 def _aligned_loads(slices: int, free_ends: tuple[FreeEnds, ...] = ()) -> tuple[FloatArray, FloatArray]:
     """ln(b/L) of the mean line load, and loads of the slices by their mean, of aligned straight lines, shape (nodes, slices)."""
-    relief = np.zeros((slices, POINTS))
-    line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=relief, free_ends=free_ends)
+    line = SlicedLine.straight(1.0, 1.0, slices, free_ends)
     # Up to lines four half-widths long, or slices a quarter of one.
     approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), NODES)
     found = line.respond(approach, np.zeros(NODES), np.ones(NODES))
