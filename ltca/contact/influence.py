@@ -120,8 +120,7 @@ def lagged_influence(
 ) -> FloatArray:
     """Return ∫∫ 1/r dA_i dA_j of a grid of uniform x cells by the lag in x, mm³, shape (lag_count, n, n).
 
-    `mirrored` adds images in y = 0, where `y_edges`, mm, then start; `end_factor` times those in y = ±`y_edges[-1]` come for
-    free ends.
+    `mirrored` adds images in y = 0, where `y_edges`, mm, start; `end_factor` times those in the ends y = ±`y_edges[-1]`.
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
@@ -152,9 +151,8 @@ def assemble_influence_matrix(
 ) -> FloatArray:
     """Return the influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
 
-    Symmetric directions are given by their positive half, edges from 0, and images are added: p·A·p/(2 π E*) is the energy of
-    that half. Free ends at y = ±`y_edges[-1]` add their images times `end_factor`. ValueError for other edges, or x edges not
-    uniform.
+    Symmetric directions are given by their positive half, edges from 0 (else ValueError), and images added: p·A·p/(2 π E*) is the
+    energy of that half. x edges are uniform; free ends at y = ±`y_edges[-1]` add their images times `end_factor`.
     """
     widths = np.diff(x_edges)
     count, width = widths.size, float(np.mean(widths))

@@ -245,8 +245,8 @@ def solve_cylinder_patch(
 ) -> PatchSolution:
     """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width; mm and MPa.
 
-    `relief` is even along the width; the expected `half_width` is by default that of a grid of half as many `cells`, whose
-    solution `start` tells contact cells; `end_factor` weighs images in free ends at ±length/2.
+    By default the half-width is that of a grid of half as many `cells`, whose solution may be given as `start`; `relief` is even
+    along the width, `end_factor` weighs images in free ends at ±length/2.
     """
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading

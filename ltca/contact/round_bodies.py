@@ -25,8 +25,7 @@ def compressed_cylinder(radius: float, half_width: float) -> float:
 def held_ring_approach(inner: float, outer: float, half_width: float, kolosov: float, angle: FloatArray) -> FloatArray:
     """Return approaches at angles, rad, from a patch on a ring held inside, as multiple of 2(1 − ν²)/(πEt); lengths in mm.
 
-    Load and measure are those of a coefficient file; Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane
-    stress.
+    Load and measure are as in coefficient files; Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
     """
     width, ratio = max(half_width / outer, NARROW), inner / outer
     count = max(int(RESOLUTION / width), 64)

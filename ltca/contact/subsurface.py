@@ -113,8 +113,7 @@ LINE_SHEAR_DEPTH = 0.7861514
 def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:
     """Return the largest shear stress below a line contact of peak pressure p0 in a body with a stress along its wall, MPa.
 
-    In plane strain half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) (Johnson, Eq. 4.45 and 4.46), and half of the stress along the
-    wall.
+    Half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) in plane strain (Johnson, Eq. 4.45 and 4.46), and half of the wall's.
 
     >>> float(line_contact_shear(1000.0, -20.0).round(2))
     290.28
@@ -124,10 +123,9 @@ def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> Floa
 
 
 def line_contact_shear_at(peak_pressure: ArrayLike, half_width: ArrayLike, depth: ArrayLike) -> FloatArray:
-    """Return the largest shear stress at and below a depth under a line contact, MPa: p0 (ζ − ζ²/√(1 + ζ²)), ζ =
-    depth/half-width.
+    """Return the largest shear stress at and below a depth, mm, under a line contact, MPa (Johnson, Eq. 4.46 and 4.47).
 
-    Johnson, Contact Mechanics, 1985, Eq. 4.46 and 4.47; it grows to `LINE_SHEAR` p0 and falls below.
+    p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, grows to `LINE_SHEAR` p0 and falls below.
 
     >>> line_contact_shear_at(1000.0, 0.2, [0.05, 0.6]).round(1)
     array([300.3, 154. ])

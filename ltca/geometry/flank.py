@@ -55,8 +55,7 @@ LEAST_SQUARE = 1e-9
 def trochoid_curvature(
     radius: FloatArray | float, eccentricity: FloatArray | float, pins: FloatArray | float, cosine: FloatArray | float
 ) -> FloatArray:
-    """Return the curvature (1 + z K² − K (1 + z) c)/(R S³), S² = 1 + K² − 2 K c, K = e z/R, of the path of the pin centres,
-    1/mm.
+    """Return the curvature of the path of the pin centres, 1/mm, positive where convex, by the cosine of pin and eccentric.
 
     >>> float(trochoid_curvature(60.0, 0.0, 40, 0.3))  # a circle
     0.016666666666666666

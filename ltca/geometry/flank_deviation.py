@@ -1,6 +1,4 @@
-"""Deviation of the flank from its design along the design normal, δ(θ) = Re Σ (a_k − i b_k) e^{ikθ} + a spline, with two
-derivatives.
-"""
+"""Deviation of the flank along its design normal, δ(θ) = Re Σ (a_k − i b_k) e^{ikθ} + a spline, with two derivatives."""
 
 from __future__ import annotations
 

@@ -151,9 +151,7 @@ class ContactGeometry:
         known: KnownPins | None = None,
         at: DiscPlace | None = None,
     ) -> FlankMotion:
-        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89), sought from θ = `start` or followed from `known`
-        pins.
-        """
+        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89) next to θ = `start`, followed from `known` pins."""
         place, coordinates, profile = self.placement, self.coordinates_of(pose), self.profile
         disc = at or self.disc_place(crank_angle, pose)
         centre, arm = self._pins(crank_angle, pose, shifts, disc)
