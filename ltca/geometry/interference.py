@@ -27,7 +27,13 @@ class Interference(NamedTuple):
 
 
 def drawn_interference(drive: Drive) -> Interference:
-    """Return the overlaps of the parts of a drive whose flank has no loops, errors of single parts left out."""
+    """Return the overlaps of the parts of a drive whose flank has no loops, errors of single parts left out.
+
+    >>> from ltca.reading.drive_file import load_drive
+    >>> found = drawn_interference(load_drive("paper").cases["CS-3"])
+    >>> print(f"{found.pins:.3f} {found.rollers:.3f} {found.holes:.3f}")
+    -0.060 -0.015 0.000
+    """
     wheel, disc, bearing, shaft = drive.pin_wheel, drive.disc, drive.crank_bearing, drive.pin_shaft
     # Gap of every pin in the nominal position: Δr_P − ΔR_C cos ψ, ψ between 0 and asin(e z_P/R).
     radius = wheel.pin_circle_radius + disc.shifting_offset
