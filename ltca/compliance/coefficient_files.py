@@ -1,8 +1,7 @@
-"""Where influence coefficients come from: files of the user's, or derived once for each distinct shape and kept.
+"""Files of influence coefficients: the user's, or derived once for each distinct shape and kept.
 
-`ltca` reads files only. What derives them registers in the entry-point group ``cyclo.derivations`` (the package `fem` does): a
-function of a drive, ``state`` or ``bodies``, ``store`` (what writes the result; of solid bodies alone) and ``processes`` (how
-many of its kind share the memory) that returns the dataset of ``docs/theory/coefficients.md``.
+`ltca` reads files only: `fem` registers a function in the entry-point group ``cyclo.derivations``, of a drive, ``state`` or
+``bodies``, ``store`` (of solid bodies) and ``processes``, that returns the dataset of docs/theory/coefficients.md.
 """
 
 from __future__ import annotations
@@ -42,11 +41,7 @@ SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45
 
 
 def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
-    """Return where the coefficients of a drive's shape are kept: under ``$XDG_CACHE_HOME`` or ``~/.cache``.
-
-    The folder carries version and hash of the code that derived them: other code derives its own. Where it cannot be
-    written and has not got them, it is a temporary one of this run (`require_cache`).
-    """
+    """Return where the coefficients of a shape are kept, by version and hash of the code; temporary where that cannot be."""
     return kept_file(file_name(drive, bodies))
 
 
@@ -67,18 +62,9 @@ def has_coefficients(drive: Drive, bodies: Bodies = "plane") -> bool:
 
 
 def find_coefficients(
-    drive: Drive,
-    files: Sequence[Path] | None = None,
-    *,
-    engine: str = "hybrid",
-    bodies: Bodies = "plane",
+    drive: Drive, files: Sequence[Path] | None = None, *, engine: str = "hybrid", bodies: Bodies = "plane"
 ) -> InfluenceCoefficients:
-    """Return the coefficients of a drive of one disc: from one of some files of ``cyclo derive``, or, without files, those that
-    are kept or newly derived.
-
-    Raises `CycloError` when no file fits the drive, the engine (``fe`` or ``hybrid``) that they are wanted for cannot represent
-    the drive, or nothing is installed that derives.
-    """
+    """Return the coefficients of a drive of one disc from files of ``cyclo derive``, or without files kept or newly derived."""
     require(drive, engine)
     if files is not None:
         return _load_first_that_fits(files, drive, bodies)[1]
@@ -86,17 +72,9 @@ def find_coefficients(
 
 
 def find_case_coefficients(
-    cases: Mapping[str, Drive],
-    files: Sequence[Path] = (),
-    *,
-    engine: str = "hybrid",
-    bodies: Bodies = "plane",
+    cases: Mapping[str, Drive], files: Sequence[Path] = (), *, engine: str = "hybrid", bodies: Bodies = "plane"
 ) -> dict[str, InfluenceCoefficients]:
-    """Return the coefficients by case, of several discs by case and disc; those of each distinct shape are derived once.
-
-    Each of the files must serve a case, and each case must be served by one. Errors are those of `find_coefficients`; they come
-    before anything is derived.
-    """
+    """Return the coefficients by case, of several discs by case and disc; every file serves a case and every case has one."""
     for drive in cases.values():
         require(drive, engine)
     cases = {label: single for name, drive in cases.items() for label, single in _discs(name, drive)}
@@ -156,10 +134,7 @@ def _load_first_that_fits(files: Sequence[Path], drive: Drive, bodies: Bodies) -
 
 
 def _kept(drive: Drive, bodies: Bodies) -> InfluenceCoefficients | None:
-    """Return the coefficients that are shipped or in the cache; None where there are none, or a damaged file that has to be
-    made again. All laws were checked when they were derived, the quick ones are again: whoever changes a file can change its
-    checksum.
-    """
+    """Return the coefficients that are shipped or in the cache, None where there are none; only quick laws are checked again."""
     if (path := shipped_file(drive, bodies)) is not None:
         return load_coefficients(path, drive, lawful="quick")
     return read_kept(file_name(drive, bodies), lambda path: load_coefficients(path, drive, lawful="quick"))
@@ -179,8 +154,6 @@ def expected_seconds(drives: Iterable[Drive]) -> list[float]:
 def told_seconds(seconds: float) -> str:
     """Return a time that is known to a factor of two, for a message.
 
-    Examples
-    --------
     >>> told_seconds(21.7), told_seconds(98.0), told_seconds(290.0)
     ('some 20 s', 'some 100 s', 'some 5 min')
     """
@@ -188,10 +161,7 @@ def told_seconds(seconds: float) -> str:
 
 
 def derivation_words(drives: Iterable[Drive], bodies: Bodies, at_once: int = 1) -> str:
-    """Return about how long drives of one disc take that are derived some at once, for a message.
-
-    That of solid bodies follows from the mesh of their section; what derives them tells it of each, with its memory.
-    """
+    """Return about how long drives of one disc take, some at once, for a message; solid bodies depend on their mesh."""
     if bodies == "solid":
         return "minutes, told before each"
     each = expected_seconds(drives)
@@ -264,9 +234,7 @@ def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> No
 
 
 def derivation(name: str = DERIVATION) -> Callable[..., Any]:
-    """Return what derives influence coefficients, or another part by the name of its entry point; CycloError where nothing
-    does.
-    """
+    """Return the function that derives influence coefficients, or the part of an entry point; CycloError where there is none."""
     found = [entry for entry in entry_points(group=GROUP) if entry.name == name]
     if not found:
         if name != DERIVATION:

@@ -1,12 +1,7 @@
-r"""Influence coefficients of the bodies derived from finite elements: the file, and their values at any place.
+"""Influence coefficients of the bodies by finite elements: approaches, and tilts of solid bodies, by unit loads at stations.
 
-The file (written by ``cyclo derive``, format in docs/theory/coefficients.md) holds the approach of patches on disc, pin,
-roller and race by unit loads on patches, at stations along the boundaries. Of each entry the half-plane's logarithm is
-taken off; what is left is smooth when load and place move together, and is interpolated. The logarithm of the
-actual places is added again.
-
-Plane bodies know loads that are even along the width alone. Files of solid bodies hold a second set, of loads linear along it:
-the tilt by a moment of 1 N·mm, q = 12 z/t³. Near a contact both follow one logarithm, that of a moment times 12/t².
+Of each entry the half-plane's logarithm is taken off; the rest is smooth when load and place move together, and is interpolated,
+and the logarithm of the actual places added again (docs/theory/coefficients.md, solid_bodies.md).
 """
 
 from __future__ import annotations
@@ -25,12 +20,7 @@ from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_
 from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
 from ltca.errors import CycloError, DamagedFileError, DriveError
-from ltca.geometry.boundary_stations import (
-    Boundary,
-    boundaries_of,
-    turned_boundaries,
-    weights_of,
-)
+from ltca.geometry.boundary_stations import Boundary, boundaries_of, turned_boundaries, weights_of
 from ltca.reading.coefficient_file import quality_warning, read_coefficients, require_places, require_same_bodies
 from ltca.reading.coefficient_schema import flank_clustering, is_solid
 
@@ -43,21 +33,11 @@ SOLID = "solid"
 
 
 class BodyPlaces(NamedTuple):
-    """Where contacts lie on the body of a disc: those of the flank, of bores and of holes, arrays (positions, contacts).
+    """Places of contacts on the body of a disc: those of the flank, of bores and of holes, arrays (positions, contacts)."""
 
-    Attributes
-    ----------
-    wall : array of int
-        Number of the wall, ascending: flank, bores, holes.
-    parameter : array
-        θ on the flank, polar angles in the disc frame about the centres of bores and holes, rad.
-    point : array of complex
-        In the disc frame, on bores from their centres, mm; zero in holes, which have one contact each.
-    """
-
-    wall: NDArray[np.intp]
-    parameter: FloatArray
-    point: ComplexArray
+    wall: NDArray[np.intp]  # number, ascending: flank, bores, holes
+    parameter: FloatArray  # θ on the flank, polar angles in the disc frame about the centres of bores and holes, rad
+    point: ComplexArray  # in the disc frame, on bores from their centres, mm; zero in holes, of one contact each
 
     @classmethod
     def on_walls(
@@ -84,60 +64,27 @@ class BodyPlaces(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InfluenceCoefficients:
-    """Smooth parts of the influence coefficients of all bodies, and the strength of their logarithms: approaches by loads,
-    mm/N, or tilts by moments, rad/(N·mm).
+    """Smooth parts of all bodies, approaches by loads, mm/N, or tilts by moments, rad/(N·mm), and factors κ of −ln(distance)."""
 
-    Attributes
-    ----------
-    fingerprint : str
-        `Drive.shape_fingerprint` of the drive they serve.
-    shared : bool
-        Whether they stand for bodies that differ a little from those they were derived for: on somebody's word.
-    plane : str
-        "strain" or "stress", state of the body part; or "solid".
-    thickness : float
-        Of all bodies but solid rollers, which are as long as they are, mm.
-    flank, bores, holes : Boundary, or tuple of Boundary
-        Stations of the flank, of the bore of each crank and of each hole.
-    disc : array, shape (stations, stations)
-        Smooth part of the disc.
-    pin : float
-        Of a wheel pin.
-    roller : array, shape (2, 2)
-        Of a roller; rows and columns inner, outer.
-    race : array, shape (angles,)
-        Of the inner race, by the angle between place and load.
-    disc_logarithm, pin_logarithm, roller_logarithm, race_logarithm : float
-        Factor κ of −ln(distance) in each body.
-    stress : StressCoefficients or None
-        Stress along the walls of the disc, where the file has it.
-    code_hash : str
-        Of the code that derived them, where the file says so.
-    warning : str
-        About figures of its accuracy that the file states and that are out of bounds; "" of none.
-    tilting : InfluenceCoefficients or None
-        Tilts by moments of solid bodies; None of plane ones, which take nothing of a tilt.
-    """
-
-    fingerprint: str
-    shared: bool
-    plane: str
-    thickness: float
+    fingerprint: str  # `Drive.shape_fingerprint` of the drive they serve
+    shared: bool  # whether they stand for bodies that differ a little, on somebody's word
+    plane: str  # "strain", "stress" or "solid"
+    thickness: float  # of all bodies but solid rollers, mm
     flank: Boundary
     bores: tuple[Boundary, ...]
     holes: tuple[Boundary, ...]
-    disc: FloatArray
+    disc: FloatArray  # shape (stations, stations)
     pin: float
-    roller: FloatArray
-    race: FloatArray
+    roller: FloatArray  # rows and columns inner, outer
+    race: FloatArray  # by the angle between place and load
     disc_logarithm: float
     pin_logarithm: float
     roller_logarithm: float
     race_logarithm: float
     stress: StressCoefficients | None = None
-    code_hash: str = ""
-    warning: str = ""
-    tilting: InfluenceCoefficients | None = None
+    code_hash: str = ""  # of the code that derived them
+    warning: str = ""  # about figures of its accuracy out of bounds
+    tilting: InfluenceCoefficients | None = None  # of solid bodies; plane ones take nothing of a tilt
 
     @property
     def bodies(self) -> Bodies:
@@ -145,10 +92,7 @@ class InfluenceCoefficients:
         return "solid" if self.plane == SOLID else "plane"
 
     def lent_to(self, drive: Drive) -> InfluenceCoefficients:
-        """Return the same coefficients to serve another drive whose bodies differ a little; who asks answers for it.
-
-        Raises `DriveError` where the drive has not as many bores and holes.
-        """
+        """Return the coefficients to serve another drive whose bodies differ a little; DriveError for other bores or holes."""
         counts = (
             ("crank.number", drive.crank.number, self.bores),
             ("pin_shaft.number_of_pins", drive.number_of_holes, self.holes),
@@ -163,9 +107,7 @@ class InfluenceCoefficients:
         return replace(self, fingerprint=fingerprint, shared=self.shared or fingerprint != self.fingerprint)
 
     def placed_in(self, drive: Drive) -> InfluenceCoefficients:
-        """Return the coefficients of the part as it stands in the disc of a drive, whose flank is turned against bores and holes
-        (`ltca.drive.parts.part_turn`).
-        """
+        """Return the coefficients of the part as it stands in the disc of a drive, its flank turned (`Drive.part_turn`)."""
         _, steps, tooth_pitches = drive.part_turn
         if steps == 0 and tooth_pitches == 0:
             return self
@@ -178,18 +120,14 @@ class InfluenceCoefficients:
         return replace(self, flank=flank, bores=bores, holes=holes, stress=placed, tilting=tilting)
 
     def with_roller_length(self, length: float) -> InfluenceCoefficients:
-        """Return the coefficients with rollers of a length of their own, mm: in the plane they yield like one over it, and solid
-        ones have it.
-        """
+        """Return the coefficients with rollers of a length, mm: plane ones yield like one over it, and solid ones have it."""
         if self.plane == SOLID:
             return self
         scale = self.thickness / length
         return replace(self, roller=scale * self.roller, roller_logarithm=scale * self.roller_logarithm)
 
     def disc_matrix(self, places: BodyPlaces) -> FloatArray:
-        """Return the approach of each contact of the disc by unit loads on each, shape (positions, contacts, contacts), mm/N;
-        the logarithm of a contact on itself is left out.
-        """
+        """Return the approach of contacts by unit loads on each, mm/N, (positions, n, n), without the logarithm on itself."""
         from scipy.sparse import csr_array
 
         stations, weights = self._weights(places)
@@ -220,10 +158,7 @@ class InfluenceCoefficients:
         return weights_of((self.flank, *self.bores, *self.holes), places.wall, places.parameter)
 
     def _logarithms(self, places: BodyPlaces) -> Iterator[tuple[slice, FloatArray]]:
-        """κ ln(distance) among the contacts of the flank and among those in bores, with their numbers.
-
-        It is zero between a contact and itself and between contacts in different bores.
-        """
+        """κ ln(distance) among contacts of the flank and of each bore, zero of one with itself, with their numbers."""
         flank, bores = np.searchsorted(places.wall[0], (1, 1 + len(self.bores)))
         for own in (slice(0, flank), slice(flank, bores)):
             wall, point = places.wall[:, own], places.point[:, own]
@@ -233,10 +168,7 @@ class InfluenceCoefficients:
             yield own, 0.5 * self.disc_logarithm * np.log(square)
 
     def race_matrix(self, angles: FloatArray, radius: float) -> FloatArray:
-        """Return the coefficients between the inner contacts of all rollers, on the race of each crank for itself, mm/N.
-
-        `angles` are polar angles of the contacts in the cage, crank after crank and the same in each, rad; `radius` is r_i, mm.
-        """
+        """Return the coefficients of inner contacts at angles in the cage, rad, on the race of each crank for itself, mm/N."""
         cranks = len(self.bores)
         angles = angles[: angles.size // cranks]
         between = angles[:, None] - angles[None, :]
@@ -256,10 +188,7 @@ def _mean_logarithm(distance: FloatArray, first: FloatArray, second: FloatArray)
 
 
 def logarithm_factor(material: Material, thickness: float, plane: str = "strain") -> float:
-    """Return κ = 2 (1 − ν²)/(π E t) of a half-plane's displacement −κ F ln(distance); 2/(π E t) in plane stress.
-
-    Near its contacts a solid is in plane strain but for its ends.
-    """
+    """Return κ = 2 (1 − ν²)/(π E t) of a half-plane's displacement −κ F ln(distance); in plane stress 2/(π E t)."""
     compliance = 1.0 / material.youngs_modulus if plane == "stress" else material.plane_strain_compliance
     return 2.0 * compliance / (np.pi * thickness)
 
@@ -267,24 +196,7 @@ def logarithm_factor(material: Material, thickness: float, plane: str = "strain"
 def load_coefficients(
     path: Path, drive: Drive, *, lawful: bool | Literal["quick"] = True, bodies: Bodies | None = None
 ) -> InfluenceCoefficients:
-    """Read the coefficients of a drive from a file of ``cyclo derive``.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    drive : Drive
-        The drive they must belong to.
-    lawful : bool or "quick"
-        Check their laws, which takes a second; "quick" those that take milliseconds, where all held when they were derived.
-    bodies : {"plane", "solid"}, optional
-        What bodies they must be of; any by default.
-
-    Raises
-    ------
-    CycloError
-        When the file cannot be read, is damaged, breaks a law, or belongs to other bodies; it names what differs.
-    """
+    """Read the coefficients of a drive from a file of ``cyclo derive``, checking its laws ("quick": those of milliseconds)."""
     data = read_coefficients(path, lawful=lawful)
     own: Bodies = "solid" if is_solid(data) else "plane"
     if bodies not in (None, own):
@@ -300,19 +212,14 @@ def load_coefficients(
     found = _coefficients_of_dataset(data, drive, shared=shared)
     stress = read_stress_coefficients(data, (found.flank, *found.bores, *found.holes))
     return replace(
-        found,
-        stress=stress,
-        code_hash=str(data.attrs.get("code_hash", "")),
-        warning=quality_warning(data, str(path)),
+        found, stress=stress, code_hash=str(data.attrs.get("code_hash", "")), warning=quality_warning(data, str(path))
     )
 
 
 def _coefficients_of_dataset(
     data: Labelled, drive: Drive, *, shared: bool, tilts: bool = False
 ) -> InfluenceCoefficients:
-    """Take the half-plane's logarithm off every entry of a file: of approaches by loads, of solid bodies of tilts by moments,
-    whose logarithms have 12 by the square of the length, as well.
-    """
+    """Take the half-plane's logarithm off every entry of a file; that of `tilts` has 12 by the square of the length."""
     plane, thickness, parts = str(data.attrs["plane"]), float(data.attrs["thickness"]), drive.materials
     # Solid rollers have their own length.
     length = drive.roller_length if plane == SOLID else thickness

@@ -1,12 +1,6 @@
-r"""Contacts of a disc that feel each other through the bodies (`fe` and `hybrid`): their laws and what the bodies yield.
+"""Contacts of a disc that feel each other through the bodies (`fe` and `hybrid`): δ_i(q) = w_i(F_i) + Σ_j C_ij F_j.
 
-Every approach is the sum of the contact's own law and what the loads on the bodies add,
-
-.. math:: \delta_i(q) = w_i(F_i) + \sum_j C_{ij} F_j ,
-
-with the law of the near field w (`ltca.compliance.near_field`: half-spaces with the lengths and profiles of the parts for
-`hybrid`, plane strain with a datum for `fe`) and the body part C of `ltca.compliance.coefficients`, in which pins and race
-are as thick as the disc and rollers as long as they are. `ltca.mechanics.contacts` solves for the loads.
+w is the law of the near field (`ltca.compliance.near_field`), C is in `ltca.compliance.coefficients`.
 """
 
 from __future__ import annotations
@@ -35,24 +29,12 @@ from ltca.laws.backed import back_shaft_pins, shaft_pin_stiffness
 
 @dataclass(frozen=True)
 class BodyFlexibility:
-    """What bodies yield at the contacts of a disc under the loads of some of them, or by moments at half the width.
-
-    Attributes
-    ----------
-    parts : BodyParts
-        Of the bodies.
-    places : BodyPlaces
-        Of all contacts.
-    counts : tuple of int
-        Numbers of wheel pins, rollers and holes.
-    loaded : tuple of array of int, shape (positions, chosen)
-        Wheel pins, rollers and holes that carry.
-    """
+    """Yield of the bodies at the contacts of a disc under the loads of some of them, or by moments at half the width."""
 
     parts: BodyParts
-    places: BodyPlaces
-    counts: tuple[int, int, int]
-    loaded: tuple[NDArray[np.intp], ...]
+    places: BodyPlaces  # of all contacts
+    counts: tuple[int, int, int]  # of wheel pins, rollers and holes
+    loaded: tuple[NDArray[np.intp], ...]  # numbers of pins, rollers and holes that carry, (positions, chosen)
 
     @cached_property
     def among(self) -> FloatArray:
@@ -83,49 +65,25 @@ class BodyFlexibility:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoupledCompliance:
-    """Compliance of contacts coupled through the bodies.
+    """Compliance of contacts coupled through the bodies."""
 
-    Attributes
-    ----------
-    contacts : DiscContacts
-        With the laws of the near fields.
-    has_ends : bool
-        Whether contacts end somewhere: in plane strain they do not.
-    hole_law : ContactLaw
-        Near field of the hole's wall, or the spring of the shaft pin where the wall does not yield.
-    bodies : tuple of BodyParts
-        Of approaches by loads and, of solid bodies, of tilts by moments.
-    """
-
-    contacts: DiscContacts
-    has_ends: bool
-    hole_law: Any
-    bodies: tuple[BodyParts, ...]
+    contacts: DiscContacts  # with the laws of the near fields
+    has_ends: bool  # whether contacts end somewhere: in plane strain they do not
+    hole_law: Any  # of the hole's wall, or the spring of the shaft pin where it is rigid
+    bodies: tuple[BodyParts, ...]  # of approaches by loads and, of solid bodies, of tilts by moments
 
     @classmethod
     def of_drive(
-        cls,
-        drive: Drive,
-        coefficients: InfluenceCoefficients,
-        near_field: NearField,
-        *,
-        hole_near_field: bool = True,
+        cls, drive: Drive, coefficients: InfluenceCoefficients, near_field: NearField, *, hole_near_field: bool = True
     ) -> CoupledCompliance:
-        """Return the coupled model of a drive of one disc by coefficients of its bodies.
-
-        With `hole_near_field` holes and shaft pins yield like a Hertz contact; else the springs of the pins stand for all. Raises
-        `DriveError` when the coefficients are those of other bodies, or plane strain cannot represent the drive.
-        """
+        """Return the model of a drive of one disc; without `hole_near_field` the springs of the shaft pins stand for all."""
         fingerprint = drive.shape_fingerprint(coefficients.bodies)
         if coefficients.fingerprint != fingerprint:
             other = f"influence coefficients of the shape {coefficients.fingerprint}"
             raise DriveError([f"{other}: must be those of {drive.name}, shape {fingerprint}"])
         yields = hole_near_field and shaft_pins_yield(drive)
         contacts = near_field_contacts(
-            drive,
-            near_field,
-            rigid_shaft_pins=hole_near_field and not yields,
-            solid=coefficients.plane == SOLID,
+            drive, near_field, rigid_shaft_pins=hole_near_field and not yields, solid=coefficients.plane == SOLID
         )
         geometry, place = contacts.geometry, contacts.geometry.placement
         body = coefficients.placed_in(drive).with_roller_length(drive.roller_length)
@@ -165,10 +123,7 @@ class CoupledCompliance:
         return replace(self.contacts, hole_law=self.hole_law).contact_laws
 
     def body_flexibility(self, places: BodyPlaces, loaded: Sequence[NDArray[np.intp]]) -> list[BodyFlexibility]:
-        """Return what the bodies of a disc yield of approaches by loads and, of solid bodies in slices, of tilts by moments.
-
-        `loaded` are the wheel pins, rollers and holes that carry.
-        """
+        """Return the yield of the bodies under the wheel pins, rollers and holes `loaded`, and of solid ones in tilts."""
         place = self.geometry.placement
         counts = place.wheel_pin_radii.shape[-1], place.roller_radii.shape[-1], place.hole_radii.shape[-1]
         return [BodyFlexibility(parts, places, counts, tuple(loaded)) for parts in self.bodies]

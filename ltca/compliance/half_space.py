@@ -35,8 +35,7 @@ from ltca.laws.spring import SpringLaw
 SAMPLES_PER_LOBE = 180
 """Stations on a lobe at which the range of effective radii is searched."""
 REFINEMENTS = 3
-"""Searches for that range, each after the first between the neighbours of the extreme found: a tip close to undercut is
-sharper than the 180th part of a lobe."""
+"""Searches for that range, each about the last extreme: a tip close to undercut is sharper than a lobe's 180th part."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,13 +48,7 @@ class HalfSpaceCompliance(DiscContacts):
     def of_drive(
         cls, drive: Drive, *, in_batch: bool = False, kinds: ContactKinds | None = None
     ) -> HalfSpaceCompliance:
-        """Return the half-space model of a drive of one disc.
-
-        Contacts in slices have the ends of their bodies by `kinds`, by default half-spaces.
-
-        In a batch (`ltca.arrays.stack_drives`) tables of profiled parts are made for ranges of radii on a ladder, so that drives
-        that differ little have the same.
-        """
+        """Return the half-space model of a drive of one disc; in a batch tables of profiled parts are on a ladder of radii."""
         geometry = replace(ContactGeometry.of_drive(drive), **tip_motion(drive))
         place, bearing, wheel, slices = geometry.placement, drive.crank_bearing, drive.pin_wheel, drive.contact.slices
         kinds, rigid, pin_radii = kinds or ContactKinds.of_drive(drive), False, np.ones(1)
@@ -119,9 +112,7 @@ class HalfSpaceCompliance(DiscContacts):
 
 
 def _line(drive: Drive, kind: ContactKind, part: PinWheel | PinShaft | None = None) -> Any:
-    """Law in slices of a kind of contacts with what they fall short by, wheel pins with the lead of the disc, pins with their
-    sleeves.
-    """
+    """Law in slices of a kind of contacts with its relief, that of wheel pins with the disc's lead, and sleeves."""
     slices, length, modulus = drive.contact.slices, kind.length, kind.contact_modulus
     heights = sliced.slice_heights(length, slices)
     relief = np.zeros(heights.shape) + (0.0 if kind.generator is None else kind.generator.relief(heights))
@@ -154,10 +145,7 @@ def shaft_pin_springs(drive: Drive, play: FloatArray) -> Any:
 
 
 def hole_in_slices(drive: Drive, kind: ContactKind, play: FloatArray) -> Any:
-    """Return the law of shaft pins and holes in slices, a kind of contacts, sleeves behind it.
-
-    `play` is that of the sleeves on their pins, mm.
-    """
+    """Return the law of shaft pins and holes in slices, sleeves of a radial play, mm, behind it."""
     line = _line(drive, kind, drive.pin_shaft)
     return sliced.back_line(line, shaft_pin_seat(drive), play)
 

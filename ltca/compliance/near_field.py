@@ -1,15 +1,7 @@
-"""Near fields of all contacts of a drive, and what finite elements have beyond them: the diagonal of the body part C.
+"""Near fields of all contacts of a drive, and the yield of bodies beyond them: the diagonal of the body part C.
 
-The near field of a contact belongs to its law, plane strain with a datum (`fe`) or a half-space of finite length
-(`hybrid`). The finite-element approach of a patch holds it as well, so it is taken off, once.
-
-What is taken off is the near field of the *finite-element body's own* load: even over the body's thickness, whatever
-the length and profile of the part that presses on it. What is left, the walls and supports of the body, then goes
-with any law near the contact: of a roller shorter than the disc, of a crowned pin. (With the law's own length in its
-place that length would cancel, and short rollers would be as stiff as long ones.)
-
-Of solid bodies that is, for loads even and linear along the width, what a half-space yields under the same load: Love's strips
-of the law in slices, projected on these loads (`projected_on_half_space`; docs/theory/solid_bodies.md).
+Finite-element approaches hold the near field of the law as well: it comes off once, as that of a load even over the body's
+thickness. With the law's length it would cancel, and short rollers be as stiff as long ones (docs/theory/solid_bodies.md).
 """
 
 from __future__ import annotations
@@ -48,7 +40,7 @@ POINTS_ACROSS = 12
 IMAGE_PANELS, NEAREST_IMAGE = 24, 1e-8
 """Of integrals over distances of images, and where they start, by the length."""
 ALIGNED_SLICES = 17
-"""Of the line that tells what one that is aligned yields less than under an even load."""
+"""Of the line whose difference from an even load is taken."""
 MEAN_DISTANCE, MEAN_CUBED_DISTANCE = 256.0 / (45.0 * np.pi**2), 8192.0 / (1575.0 * np.pi**2)
 """⟨|x − x′|⟩ and ⟨|x − x′|³⟩ of two semi-ellipses of half-width 1."""
 MAX_ITERATIONS = 30
@@ -56,16 +48,7 @@ MAX_ITERATIONS = 30
 
 
 def near_field_contacts(drive: Drive, kind: NearField, *, rigid_shaft_pins: bool, solid: bool = False) -> DiscContacts:
-    """Return the contacts of a drive with the laws of their near fields.
-
-    Half-spaces have the lengths and profiles of rollers and pins, in slices with the ends of `solid` bodies; plane strain has a
-    datum. With `rigid_shaft_pins` nothing yields at the holes but their walls.
-
-    Raises
-    ------
-    DriveError
-        For another kind; in plane strain, when the drive is not the same all along its thickness.
-    """
+    """Return the contacts of a drive with the laws of their near fields; with `rigid_shaft_pins` holes yield by walls alone."""
     if kind not in get_args(NearField):
         raise DriveError([f"near_field = {kind!r}: must be one of {', '.join(map(repr, get_args(NearField)))}"])
     modulus, kinds = hole_modulus(drive, rigid_shaft_pins=rigid_shaft_pins), ContactKinds.of_drive(drive)
@@ -109,10 +92,7 @@ def near_field_contacts(drive: Drive, kind: NearField, *, rigid_shaft_pins: bool
 
 
 def plane_strain_datum(drive: Drive) -> float:
-    """Distance at which a near field in plane strain hands over to the body part, mm.
-
-    Only its logarithm enters, and cancels where the body part is in plane strain, too.
-    """
+    """Distance at which a near field in plane strain hands over to the body part, mm: it cancels against plane strain there."""
     return max(drive.disc.thickness, drive.pin_wheel.pin_radius, drive.crank_bearing.roller_radius)
 
 
@@ -123,25 +103,12 @@ def near_field_depth(drive: Drive, kind: NearField) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BodyParts:
-    """What the bodies of a disc yield beyond the near fields of contacts: of approaches by loads, mm/N, or of tilts by moments,
-    rad/(N·mm).
+    """Yield of a disc's bodies beyond near fields: of approaches by loads, mm/N, or of tilts by moments, rad/(N·mm)."""
 
-    Attributes
-    ----------
-    coefficients : InfluenceCoefficients
-        Between the contacts.
-    alone : array, shape (3,)
-        What a pin, a roller in its bore and a hole with the spring behind it yield by themselves, added to the diagonal.
-    race : array, shape (rollers, rollers)
-        Between the inner contacts of the rollers, which feel those on their own race alone, with that of each by itself.
-    unit : float
-        Square of what tilts are multiplied by, mm², 1 for approaches.
-    """
-
-    coefficients: InfluenceCoefficients
-    alone: FloatArray
-    race: FloatArray
-    unit: float
+    coefficients: InfluenceCoefficients  # between the contacts
+    alone: FloatArray  # of a pin, a roller in its bore, and a hole with the spring behind it, on the diagonal
+    race: FloatArray  # between the inner contacts of the rollers, (rollers, rollers), own ones included
+    unit: float  # square of the factor of tilts, mm², 1 for approaches
 
     @classmethod
     def of_drive(
@@ -155,21 +122,11 @@ class BodyParts:
         hole_spring: float,
         tilts: bool,
     ) -> BodyParts:
-        """Return the parts of approaches by loads, or of tilts by moments, whose units are 12 by the square of the length.
+        """Return the parts of approaches by loads, or of `tilts` by moments, whose unit is 12 by the square of the length.
 
-        Rollers of the `coefficients` are as long as they are (`InfluenceCoefficients.with_roller_length`);
-        `elastic_shaft_pins` are bare ones that yield where the near field of the holes is, `hole_spring` is what stands behind
-        that, mm/N, which is rigid against moments.
-
-        Notes
-        -----
-        With A = smooth + κ (−ln(b/2) + 1/4) the approach of a patch, the plane-strain law holds κ (ln(2D/b) + 1/4)
-        of it, which leaves smooth − κ ln D. What a half-space of finite length holds of it for the same patch is
-        `finite_length_approach`; both are taken at the half-width of half the drive's load T/(e u) on one contact
-        (they differ by the end effects alone, which change little with the load). A plane-stress body part joins the
-        plane-strain near field at D. Of solid bodies a half-space with the images of its ends holds
-        `projected_on_half_space` of the even and of the linear load, plane strain the same of both, 12/t² κ of the linear one.
-        Of a line of one slice, a half-space without images, comes off what leaves an aligned line what it has with many.
+        With A = smooth + κ (−ln(b/2) + 1/4) of a patch, plane strain holds κ (ln(2D/b) + 1/4), so smooth − κ ln D is left;
+        half-spaces hold `finite_length_approach`, of solid bodies `projected_on_half_space` with images of their ends, at the
+        half-width of half the drive's load T/(e u). Of one slice comes off the difference of an aligned line to that of many.
         """
         parts, bearing, shaft, c = drive.materials, drive.crank_bearing, drive.pin_shaft, coefficients
         place, thickness, length = geometry.placement, drive.disc.thickness, drive.roller_length
@@ -239,22 +196,11 @@ class BodyParts:
 
 
 def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain") -> float:
-    r"""Return what a cylinder carried by its whole cross-section yields at a contact, beyond the half-plane's logarithm.
+    """Return the yield of a cylinder carried evenly by its section, in mm under the logarithm: A/κ_l + ln(b/2) − 1/4.
 
-    A shaft pin is carried from its ends: each slice by shear over its area, here evenly, and it moves on the spring or beam by
-    the mean over that area. Kolosov's potentials with the particular solution of the even body force,
-    :math:`2\mu(u + iv) \propto z \bar z`, whose mean the other terms undo, give the mean approach of a semi-elliptic patch
+    Kolosov's potentials for an even body force give A = κ_l (ln(2R/b) + 1/4 − (κ + 2)/(2(κ + 1))) to (b/R)², with the logarithm's
+    factor κ_l and κ = 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress (docs/theory/coefficients.md).
 
-    .. math:: A = \kappa_l \left( \ln\frac{2R}{b} + \frac14 - \frac{\kappa + 2}{2(\kappa + 1)} \right), \qquad
-              \kappa_l = \frac{2(1 - \nu^2)}{\pi E t},
-
-    to (b/R)²; :math:`\kappa = 3 - 4\nu` in plane strain, in which slices of a solid pin are as well, (3 − ν)/(1 + ν) in plane
-    stress (without ν in κ_l). What is returned is
-    :math:`A/\kappa_l + \ln(b/2) - 1/4`: what is left when the logarithm of a patch on itself is taken off, in mm under the
-    logarithm.
-
-    Examples
-    --------
     >>> round(carried_cylinder(1.0, 0.3), 6)
     -0.678571
     """
@@ -264,11 +210,7 @@ def carried_cylinder(radius: float, poisson_ratio: float, plane: str = "strain")
 
 
 def finite_length_approach(length: float, half_width: float) -> float:
-    """Return the mean displacement of a half-space over a patch of finite length, times E/(1 − ν²) per load, 1/mm.
-
-    It is the pressure-weighted mean over the patch pressed by a straight cylinder of that length L, mm, with the half-width b,
-    mm, at mid-length: its approach less the mean separation.
-    """
+    """Return the approach less mean separation of a straight cylinder, lengths in mm, times E/(1 − ν²) per load, 1/mm."""
     law = LineContactLaw(length, 1.0)
     # Newton's method on ln δ = ln b² + ln m(ln(δ/L²)) at a radius of 1: m = ρδ/b² goes from 0.5 to 10 over all of the law, so
     # slowly that the first guess is within its reach. (A bracketing solver of scipy takes longer to import than to search.)
@@ -291,18 +233,8 @@ def finite_length_approach(length: float, half_width: float) -> float:
 
 
 def redistributed_approach(length: float, half_width: float, free_ends: tuple[FreeEnds, ...] = ()) -> float:
-    """Return by how much less than under an even load an aligned straight line approaches, times E/(1 − ν²) per load, 1/mm.
-
-    The load is that of the half-width, mm, in plane strain; both are those of the law in slices.
-    """
-    slices = ALIGNED_SLICES
-    line = sliced.SlicedLine(
-        length=length,
-        contact_modulus=1.0,
-        slices=slices,
-        relief=np.zeros(sliced.slice_heights(length, slices).shape),
-        free_ends=free_ends,
-    )
+    """Return how much less than under an even load an aligned line in slices approaches, times E/(1 − ν²) per load, 1/mm."""
+    line = sliced.SlicedLine.straight(length, 1.0, ALIGNED_SLICES, free_ends)
     load = 0.25 * np.pi * half_width**2 * length
     even, _ = projected_on_half_space(length, half_width, free_ends)
     approach = start = even * load + half_width**2 / 8.0
@@ -318,23 +250,11 @@ def redistributed_approach(length: float, half_width: float, free_ends: tuple[Fr
 def projected_on_half_space(
     length: float, half_width: float, free_ends: tuple[FreeEnds, ...] = ()
 ) -> tuple[float, float]:
-    r"""Return what a half-space yields under loads even and linear along the width, times E/(1 − ν²), 1/mm and 1/mm³.
+    """Return the yield of a half-space under loads even, 1/t, and linear, 12 z/t³, times E/(1 − ν²), 1/mm and 1/mm³.
 
-    Loads are semi-elliptic over 2b across and spread along t as 1/t for 1 N and 12 z/t³ for 1 N·mm; the same vectors measure the
-    mean displacement and the tilt. With Boussinesq's kernel 1/r and the distance ξ of two points across,
+    Semi-elliptic over 2b across, with S_k = ⟨∫₀ᵗ s^k/√(s² + ξ²) ds⟩ of Boussinesq's kernel they are 2/(πt) (S₀ − S₁/t) and
+    24/(πt³) (S₀ − 3 S₁/t + 2 S₃/t³), plus images in `free_ends` (docs/theory/solid_bodies.md).
 
-    .. math:: \frac{2}{\pi t} \Big( S_0 - \frac{S_1}{t} \Big), \qquad
-              \frac{24}{\pi t^3} \Big( S_0 - \frac{3 S_1}{t} + \frac{2 S_3}{t^3} \Big), \qquad
-              S_k = \Big\langle \int_0^t \frac{s^k}{\sqrt{s^2 + \xi^2}}\,ds \Big\rangle .
-
-    To b/t they are :math:`\kappa (\ln(4t/b) + 1/4 - 1)` and :math:`12/t^2\, \kappa (\ln(4t/b) + 1/4 - 7/3)`, those of
-    plane strain with the datums 2t/e and 2t/e^{7/3}.
-
-    t is the `length` and b the `half_width`, mm. Images of `free_ends` of the body count as well: at the distances :math:`s` of
-    points and images both loads have the densities of sums of two evenly or linearly spread heights.
-
-    Examples
-    --------
     >>> even, linear = projected_on_half_space(10.0, 1e-6)
     >>> print(f"{0.5 * np.pi * 10.0 * even - np.log(4e7):.4f} {np.pi * 1e3 / 24.0 * linear - np.log(4e7):.4f}")
     -0.7500 -2.0833

@@ -1,13 +1,7 @@
-"""Flexibility of what holds pins: beams under several discs, and the ring of the pin wheel under all its pins.
+"""Flexibility of what holds pins, u = −S f with one symmetric S: beams under several discs, and the ring of the pin wheel.
 
-What the forces on pins displace is :math:`u = -S f`, with one symmetric flexibility S: a pin is one beam under the forces of all
-discs (`ltca.beam`), and the ring moves every pin by the forces on all of them, summed over the discs (`ltca.compliance.ring`).
-Displacements of wheel pins are those in the turning wheel, so S does not turn. What a disc's own force makes a beam yield lies
-along the common normal, in series with the contact, and is part of its law (`ltca.laws.backed`).
-
-In slices a disc presses a pin with a moment as well, and the pin leans. Leans are kept as displacements at half the thickness
-of the disc and moments as forces there, behind those of all discs, so that S stays symmetric. All that a beam bends is in S
-then, also under its own disc. A ring moves seats and does not lean them.
+Displacements of wheel pins are in the turning wheel. In slices pins lean: leans stand as displacements at half the thickness,
+moments as forces there, behind those of all discs. Bending by a disc's own force is in S there, else in `ltca.laws.backed`.
 """
 
 from __future__ import annotations
@@ -25,29 +19,15 @@ from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PinDisplacements:
-    """What displaces pins.
+    """Flexibility of wheel pins, then shaft pins, by beams and ring."""
 
-    Attributes
-    ----------
-    beams : array, shape (pairs, discs, discs) or (positions, pairs, discs, discs)
-        Deflection of each pin at disc d under a unit force of disc d', wheel pins before shaft pins, mm/N; zero for d = d', and
-        for pins that do not bend. Where pins lean, leans and moments follow, and d = d' is not zero.
-    ring : array, shape (z_P, 2, z_P, 2) or (positions, z_P, 2, z_P, 2), or None
-        Displacement (x, y) of the seats of the wheel pins in the wheel under unit forces at the seats, mm/N.
-    leans : bool
-        Whether pins lean.
-    """
-
-    beams: FloatArray = by_drive(3)
-    ring: FloatArray | None = by_drive(4, default=None)
+    beams: FloatArray = by_drive(3)  # mm/N, (…, pairs, discs, discs), zero for d = d'; where pins lean, leans follow
+    ring: FloatArray | None = by_drive(4, default=None)  # of seats by forces, in the wheel, mm/N, (…, z_P, 2, z_P, 2)
     leans: bool = False
 
     @classmethod
     def of_drive(cls, drive: Drive, lender: Drive | None = None) -> PinDisplacements | None:
-        """Return what displaces the pins of a drive; None where they stand still but for what each disc alone bends.
-
-        A ring of finite elements takes the shape of that of the `lender`, if one is given (`ring_flexibility`).
-        """
+        """Return the flexibility of a drive, a ring of elements shaped as the `lender`'s; None where it displaces no pin."""
         beams, ring = _beams(drive), ring_flexibility(drive, lender)
         if ring is None and not beams.any():
             return None

@@ -1,10 +1,4 @@
-"""Pressures behind the loads found: read from the laws of the contacts, for shaft pins from their loads.
-
-A shaft pin is smaller than its hole by about the eccentricity: a conforming line contact over the thickness of the disc,
-Hertz's as long as its half-width is small against the pin. Where a spring stands for all that yields there, and for elastic
-pins of ``fe`` and ``hybrid``, E* is that of disc and shaft pin; where ``pin_shaft.elastic_contact`` is false it is that of the
-disc alone, √2 of the other pressure for a pin of the disc's material, on the safe side.
-"""
+"""Pressures from the laws of the contacts, of shaft pins in the plane from their loads (docs/theory/contact.md)."""
 
 from __future__ import annotations
 
@@ -28,11 +22,7 @@ if TYPE_CHECKING:
 def pressures_of_law(
     law: ContactLaw, ends: ContactKind | None, approach: FloatArray, effective_radius: FloatArray
 ) -> KindPressures:
-    """Return pressures and half-widths of contacts at their approaches, mm, shape (positions, pairs).
-
-    Approaches are those of the contacts with what is behind them; effective radii, mm, are broadcast to their shape. Pressures at
-    the ends are read from `ends`; None stands for plane strain, which has no ends.
-    """
+    """Return pressures and half-widths at approaches, mm, seats and beams behind included; `ends` None in plane strain."""
     law, approach = law.surface(approach, effective_radius)
     closed = approach > 0.0
     mid, half_width, largest = (np.zeros(closed.shape) for _ in range(3))
@@ -53,23 +43,19 @@ def pressures_in_plane(
     *,
     ends: bool = True,
 ) -> ContactPressures:
-    """Return pressures and half-widths of contacts in the plane: of wheel pins and rollers at approaches to the laws of the
-    contacts, mm, of shaft pins and holes by their loads. Without `ends` contacts are in plane strain.
-    """
+    """Return pressures and half-widths in the plane, of pins and rollers at approaches, mm, of shaft pins by their loads."""
     kinds, (_, outer_radius, hole_radius, inner_radius) = contacts.kinds, contacts.contact_laws
     holes, _ = contacts.hole_law.approach_at_load(response.hole_load, hole_radius)
-    each = (
-        pressures_of_law(law, kind if ends else None, approach, radius)
-        for law, kind, approach, radius in (
-            (contacts.pin_law, kinds.pins, pins, response.flank.effective_radius),
-            (contacts.outer_law, kinds.outer, outer, outer_radius),
-            (contacts.inner_law, kinds.inner, inner, inner_radius),
-            (contacts.hole_law, kinds.holes, holes, hole_radius),
-        )
-    )
-    at_pins, in_bores, on_races, at_holes = each
+
+    def of(law: ContactLaw, kind: ContactKind, approach: FloatArray, radius: FloatArray) -> KindPressures:
+        return pressures_of_law(law, kind if ends else None, approach, radius)
+
     return ContactPressures(
-        pins=at_pins, outer=in_bores, inner=on_races, holes=at_holes, rigid_shaft_pins=contacts.rigid_shaft_pins
+        pins=of(contacts.pin_law, kinds.pins, pins, response.flank.effective_radius),
+        outer=of(contacts.outer_law, kinds.outer, outer, outer_radius),
+        inner=of(contacts.inner_law, kinds.inner, inner, inner_radius),
+        holes=of(contacts.hole_law, kinds.holes, holes, hole_radius),
+        rigid_shaft_pins=contacts.rigid_shaft_pins,
     )
 
 
@@ -82,25 +68,19 @@ def pressures_in_slices(
     rigid_shaft_pins: bool = False,
     shaft_pins_on_springs: bool = False,
 ) -> ContactPressures:
-    """Return pressures and half-widths of contacts in slices by their line loads; those of plane strain have no ends.
-
-    Slices of springs carry evenly where nothing tilts: their line loads are those of aligned lines times what the springs have of
-    the mean.
-    """
+    """Return pressures and half-widths of contacts in slices by their line loads; springs have those of aligned lines."""
     rollers, pins, holes = response.rollers.leaning, response.leaning_pins, response.leaning_holes
     if pins is None or holes is None or rollers is None:
         raise ValueError("contacts have no slices")
     of_holes, radius = holes.contact.line_load, place.hole_effective_radii
     if shaft_pins_on_springs:
         of_holes = _between_ends(kinds.holes, of_holes, holes.contact.load, radius)
-    found = (
-        _of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
-        _of_slices(kinds.outer, rollers.outer.line_load, place.outer_effective_radii, has_ends),
-        _of_slices(kinds.inner, rollers.inner.line_load, place.inner_effective_radii, has_ends),
-        _of_slices(kinds.holes, of_holes, radius, has_ends),
-    )
     return ContactPressures(
-        pins=found[0], outer=found[1], inner=found[2], holes=found[3], rigid_shaft_pins=rigid_shaft_pins
+        pins=_of_slices(kinds.pins, pins.contact.line_load, response.flank.effective_radius, has_ends),
+        outer=_of_slices(kinds.outer, rollers.outer.line_load, place.outer_effective_radii, has_ends),
+        inner=_of_slices(kinds.inner, rollers.inner.line_load, place.inner_effective_radii, has_ends),
+        holes=_of_slices(kinds.holes, of_holes, radius, has_ends),
+        rigid_shaft_pins=rigid_shaft_pins,
     )
 
 
@@ -110,14 +90,7 @@ def _between_ends(
     """Line loads that add up to the same loads, shaped as those of aligned lines of finite length."""
     slices = line_load.shape[-2]
     approach, _ = LineContactLaw(kind.length, kind.contact_modulus).approach_at_load(load, effective_radius)
-    relief = np.zeros(sliced.slice_heights(kind.length, slices).shape)
-    line = sliced.SlicedLine(
-        length=kind.length,
-        contact_modulus=kind.contact_modulus,
-        slices=slices,
-        relief=relief,
-        free_ends=kind.free_ends,
-    )
+    line = sliced.SlicedLine.straight(kind.length, kind.contact_modulus, slices, kind.free_ends)
     shaped = line_load * line.respond(approach, np.zeros(load.shape), effective_radius).line_load
     total = kind.length / slices * sliced.slice_means(shaped).sum(axis=-1)
     scale = np.divide(load, total, out=np.zeros(load.shape), where=total > 0.0)
@@ -125,10 +98,7 @@ def _between_ends(
 
 
 def _of_slices(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray, has_ends: bool) -> KindPressures:
-    """Pressures of one kind by line loads at the points of the slices, N/mm, shape (positions, pairs, slices, points).
-
-    The number of slices is odd, and mid-width is the middle one.
-    """
+    """Pressures of one kind by line loads, N/mm, (positions, pairs, slices, points); mid-width is the middle slice."""
     found = sliced.estimate_along_width(kind, line_load, effective_radius)
     return along_width(kind, found, effective_radius, has_ends=has_ends)
 

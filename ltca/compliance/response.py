@@ -1,8 +1,4 @@
-"""Contacts at a pose as they are answered: loads of all pairs, their generalised force and its tangent.
-
-The model of a disc (`DiscModel`) has its geometry, the laws of its contacts and its bodies; `ltca.mechanics` finds what all discs
-carry together, and `ltca.equilibrium.reducer` adds what holds them.
-"""
+"""Contacts at a pose: loads of all pairs, their generalised force and its tangent, and the model of a disc."""
 
 from __future__ import annotations
 
@@ -26,11 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaningRollers:
-    """Balanced rollers in slices, arrays (positions, rollers), rad.
-
-    They lean along their rays and tilt in their contacts, positive presses positive z; moments are about mid-length, that on the
-    disc acts along the ray.
-    """
+    """Balanced rollers in slices, (positions, rollers), rad: leans along their rays and tilts, positive presses positive z."""
 
     lean: FloatArray
     inner_tilt: FloatArray
@@ -41,29 +33,15 @@ class LeaningRollers:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollerState:
-    """Balanced rollers, crank after crank, arrays (positions, rollers).
+    """Balanced rollers, crank after crank, arrays (positions, rollers), mm and N."""
 
-    Attributes
-    ----------
-    share : array
-        Part of the total interference taken by the inner contact.
-    inner_approach, outer_approach : array
-        mm, negative where open; a free roller rests on the inner race.
-    inner_load, outer_load : array
-        N.
-    outer_direction : array of complex
-        Unit vector from the bore centre to the roller, the direction of the load on the disc.
-    leaning : LeaningRollers or None
-        Rollers in slices; None in the plane.
-    """
-
-    share: FloatArray
-    inner_approach: FloatArray
+    share: FloatArray  # part of the total interference taken by the inner contact
+    inner_approach: FloatArray  # negative where open; a free roller rests on the inner race
     outer_approach: FloatArray
     inner_load: FloatArray
     outer_load: FloatArray
-    outer_direction: ComplexArray
-    leaning: LeaningRollers | None = None
+    outer_direction: ComplexArray  # unit vector from bore centre to roller, of the load on the disc
+    leaning: LeaningRollers | None = None  # in slices
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,51 +54,25 @@ class LeaningPairs:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscResponse:
-    """Contacts of one disc in a batch of positions at given poses; of wheel pins before shaft pins where both are pairs.
+    """Contacts of one disc in a batch of positions at given poses; of wheel pins before shaft pins where both are pairs."""
 
-    Attributes
-    ----------
-    force : array, shape (positions, coordinates)
-        Generalised contact force Σ F ∂δ/∂q, of `ltca.geometry.coordinates`: N and N·mm.
-    flank, holes : FlankMotion, PairMotion
-        Approaches of wheel pins and shaft pins.
-    rollers : RollerState
-        Rollers between races and bores.
-    pin_load, hole_load : array, shape (positions, pairs)
-        N.
-    shifts, leans : array of complex, shape (positions, pairs), or None
-        Displacements of pins, mm, by the parts that hold them; in slices their leans at the disc, rad.
-    ring : array of complex, shape (positions, z_P), or None
-        What the ring of the wheel moves the wheel pins in the turning wheel, mm, a part of `shifts`; None where it is rigid.
-    friction : array, shape (positions, pairs), or None
-        Forces of pins along their tangents, N; None without friction.
-    leaning_pins, leaning_holes : LeaningPairs or None
-        Pins in slices; None in the plane.
-    deformation : array, shape (positions, components, contacts), or None
-        Of contacts that bodies couple, what their own laws take of the approaches and, in slices, of the tilts at half the
-        thickness of the disc, mm: wheel pins, rollers in the bores, holes, rollers on the races.
-    """
-
-    force: FloatArray
+    force: FloatArray  # Σ F ∂δ/∂q, N and N·mm, shape (positions, coordinates)
     flank: FlankMotion
     holes: PairMotion
     rollers: RollerState
     pin_load: FloatArray
     hole_load: FloatArray
-    shifts: ComplexArray | None = None
-    leans: ComplexArray | None = None
-    ring: ComplexArray | None = None
-    friction: FloatArray | None = None
-    leaning_pins: LeaningPairs | None = None
+    shifts: ComplexArray | None = None  # displacements of pins by the parts that hold them, mm, (positions, pairs)
+    leans: ComplexArray | None = None  # of the pins at the disc in slices, rad
+    ring: ComplexArray | None = None  # displacements of wheel pins by the ring, in the turning wheel, mm, of `shifts`
+    friction: FloatArray | None = None  # forces of pins along their tangents, N
+    leaning_pins: LeaningPairs | None = None  # in slices
     leaning_holes: LeaningPairs | None = None
-    deformation: FloatArray | None = None
+    deformation: FloatArray | None = None  # that coupled contacts' own laws take, mm, (positions, components, contacts)
 
     @property
     def pin_forces(self) -> ComplexArray:
-        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs).
-
-        In slices normals turn along the width where pairs tilt across them, by which moments press across as well.
-        """
+        """Force of the disc on each wheel pin and shaft pin in the fixed frame, with friction, N, shape (positions, pairs)."""
         load, normal, along = (
             np.concatenate(both, axis=1)
             for both in (
@@ -142,9 +94,7 @@ class DiscResponse:
 
     @property
     def pin_moments(self) -> ComplexArray:
-        """Moment of the disc on each pin in slices as an arrow that works along leans, with friction, N·mm, shape (positions,
-        pairs).
-        """
+        """Moment of the disc on each pin in slices along leans, with friction, N·mm, (positions, pairs)."""
         found, along = [], []
         for motion, pairs in ((self.flank, self.leaning_pins), (self.holes, self.leaning_holes)):
             assert pairs is not None
@@ -164,33 +114,15 @@ class DiscResponse:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
-    """Contacts of all discs of a reducer: of n discs array axes for pairs are n times as long, disc after disc.
+    """Contacts of all discs of a reducer: of n discs array axes for pairs are n times as long, disc after disc."""
 
-    Attributes
-    ----------
-    force : array, shape (positions, coordinates)
-        Generalised force of the reducer, of `ltca.geometry.coordinates`: N and N·mm.
-    parts : tuple of DiscResponse
-        Of each disc, by its own pose.
-    tangent : array, shape (positions, coordinates, coordinates)
-        Derivative of the force by the pose.
-    contact_stiffness : array, shape (positions, coordinates)
-        Diagonal of the tangent without supports.
-    left : array, shape (positions,)
-        Force that contacts, or displacements of pins, which have not settled amount to, N.
-    shifts : array of complex, shape (positions, discs, pairs), or None
-        Displacements of wheel pins and shaft pins, mm: what the parts that hold them yield.
-    inner : Inner or None
-        Inner unknowns beside the pose; None of one disc of several.
-    """
-
-    force: FloatArray
-    parts: tuple[DiscResponse, ...]
-    tangent: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
-    contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
-    left: FloatArray = field(default_factory=lambda: np.zeros(0))
-    shifts: ComplexArray | None = None
-    inner: Inner | None = None
+    force: FloatArray  # of the reducer, N and N·mm, shape (positions, coordinates)
+    parts: tuple[DiscResponse, ...]  # of each disc, by its own pose
+    tangent: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))  # derivative of the force
+    contact_stiffness: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))  # its diagonal without supports
+    left: FloatArray = field(default_factory=lambda: np.zeros(0))  # unsettled force, N
+    shifts: ComplexArray | None = None  # displacements of pins, mm, (positions, discs, pairs)
+    inner: Inner | None = None  # unknowns beside the pose; None of one disc of several
 
     @property
     def flank(self) -> FlankMotion:
@@ -248,52 +180,25 @@ def beside(values: Sequence[Result]) -> Result:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AlongWidth:
-    """What all pairs of one kind in slices carry along their width, arrays (positions, pairs, slices), zero where open.
+    """Contacts of one kind in slices along their width, arrays (positions, pairs, slices), zero where open."""
 
-    Attributes
-    ----------
-    line_load : array
-        Mean over each slice, N/mm.
-    even_line_load : array
-        The same without the bulge of ends that carry: by what slices of an aligned straight line do by its middle, N/mm.
-    pressure, half_width : array
-        Largest over the profile and half-width in the middle of each slice, MPa and mm.
-    place : array, shape (positions, pairs)
-        Height of the largest pressure anywhere above the middle of the contact, mm.
-    end_load : array, shape (positions, pairs, 2)
-        Line load at the lower and the upper end, N/mm: zero where the contact ends before.
-    """
-
-    line_load: FloatArray
-    even_line_load: FloatArray
-    pressure: FloatArray
-    half_width: FloatArray
-    place: FloatArray
-    end_load: FloatArray
+    line_load: FloatArray  # mean over each slice, N/mm
+    even_line_load: FloatArray  # without the bulge of ends that carry, by slices of an aligned straight line
+    pressure: FloatArray  # largest over the profile, MPa
+    half_width: FloatArray  # in the middle of each slice, mm
+    place: FloatArray  # height of the largest pressure anywhere, mm, (positions, pairs)
+    end_load: FloatArray  # line load at the lower and upper end, N/mm, (positions, pairs, 2)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KindPressures:
-    """Pressures and half-widths of all pairs of one kind, shape (positions, pairs), zero where open.
+    """Pressures and half-widths of all pairs of one kind, shape (positions, pairs), zero where open."""
 
-    Attributes
-    ----------
-    mid, half_width : array
-        Largest pressure at mid-width, MPa, and contact half-width there, mm.
-    largest : array
-        Largest pressure anywhere, MPa: at unrelieved ends it is singular and depends on the end cell. Not a number
-        in plane strain, which has no ends.
-    end_cell : float
-        Length of the end cell behind `largest`, mm; not a number where that is none.
-    along : AlongWidth or None
-        Of contacts in slices; None in the plane.
-    """
-
-    mid: FloatArray
-    largest: FloatArray
-    half_width: FloatArray
-    end_cell: float
-    along: AlongWidth | None = None
+    mid: FloatArray  # largest at mid-width, MPa
+    largest: FloatArray  # anywhere, MPa, singular at unrelieved ends; NaN in plane strain, which has none
+    half_width: FloatArray  # at mid-width, mm
+    end_cell: float  # length over which `largest` is a mean, mm; NaN where there is none
+    along: AlongWidth | None = None  # in slices
 
     @property
     def widest(self) -> FloatArray:
@@ -303,10 +208,7 @@ class KindPressures:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactPressures:
-    """Pressures of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
-
-    With `rigid_shaft_pins` the last are those of rigid shaft pins: E* of the disc alone (`ltca.compliance.pressures`).
-    """
+    """Pressures of all kinds; of rigid shaft pins by E* of the disc alone (`ltca.compliance.pressures`)."""
 
     pins: KindPressures
     outer: KindPressures
@@ -316,9 +218,7 @@ class ContactPressures:
 
 
 class ContactLaws(NamedTuple):
-    """Laws of the contacts of a disc: wheel pins, rollers in bores, shaft pins, rollers on races; and effective radii, mm,
-    of those that have one of their own.
-    """
+    """Laws of a disc's wheel pins, rollers in bores, shaft pins and rollers on races, and their own effective radii, mm."""
 
     laws: tuple[Any, Any, Any, Any]
     outer_radius: FloatArray
@@ -351,19 +251,7 @@ class DiscModel(Protocol):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiscContacts:
-    """Geometry of the contacts of a disc, their laws, and what pressures are read by.
-
-    Attributes
-    ----------
-    geometry : ContactGeometry
-        Of the disc in its drive.
-    pin_law, outer_law, inner_law, hole_law : ContactLaw, or law in slices
-        Of wheel pins and flank, rollers in the bore and on the inner race, shaft pins and holes.
-    kinds : ContactKinds
-        Lengths and profiles of the contacts.
-    rigid_shaft_pins : bool
-        Whether shaft pins are rigid where they touch their holes.
-    """
+    """Geometry of the contacts of a disc, their laws of the plane or in slices, lengths and profiles."""
 
     geometry: ContactGeometry
     pin_law: Any
@@ -371,7 +259,7 @@ class DiscContacts:
     inner_law: Any
     hole_law: Any
     kinds: ContactKinds
-    rigid_shaft_pins: bool = False
+    rigid_shaft_pins: bool = False  # where they touch their holes
 
     @property
     def contact_laws(self) -> ContactLaws:
@@ -387,37 +275,18 @@ class DiscContacts:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inner:
-    """Inner unknowns beside the pose, as they were found at some pose, and how they follow the pose to first order.
+    """Inner unknowns beside the pose, as they were found at some pose, and how they follow the pose to first order."""
 
-    Attributes
-    ----------
-    pose : array, shape (positions, coordinates)
-        Where they were found.
-    place, lean : array, shape (positions, rollers)
-        Of the rollers: inward from where they only touch the race, and lean along their rays by half the thickness of the disc,
-        zero in the plane, mm; not a number where they are not known.
-    approach : array, shape (positions, components, contacts), or None
-        Deformations e, mm; None where they are the approaches themselves.
-    shifts : array of complex, shape (positions, rows, pairs), or None
-        Displacements u of the pins, mm; None where none is known.
-    near : tuple of array
-        Where the laws of each disc and kind start nearby (`ltca.laws.sliced_contact.SlicedContact.near`); empty in the plane.
-    by_pose, approach_by_pose, shifts_by_pose : array or None
-        Derivatives by the pose; None where they are not known.
-    columns : tuple of tuple of int
-        Coordinates by which `by_pose` has the derivatives of the rollers of each disc; empty for all.
-    """
-
-    pose: FloatArray
-    place: FloatArray
-    lean: FloatArray
-    approach: FloatArray | None
-    shifts: ComplexArray | None
-    near: tuple[FloatArray, ...]
-    by_pose: FloatArray | None = None
+    pose: FloatArray  # where they were found
+    place: FloatArray  # of rollers, inward from where they only touch the race, mm; NaN where unknown, (positions, rollers)
+    lean: FloatArray  # along their rays by half the thickness of the disc, mm, alike
+    approach: FloatArray | None  # deformations e, mm, (positions, components, contacts); None: the approaches
+    shifts: ComplexArray | None  # displacements u of the pins, mm, (positions, rows, pairs)
+    near: tuple[FloatArray, ...]  # `SlicedContact.near` of each disc and kind; empty in the plane
+    by_pose: FloatArray | None = None  # derivatives of rollers by the pose, as those below
     approach_by_pose: FloatArray | None = None
     shifts_by_pose: ComplexArray | None = None
-    columns: tuple[tuple[int, ...], ...] = ()
+    columns: tuple[tuple[int, ...], ...] = ()  # coordinates of `by_pose` for each disc; empty for all
 
     @property
     def kept(self) -> Inner:
@@ -452,23 +321,11 @@ class Inner:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Start:
-    """Inner unknowns of a neighbouring pose, to start from.
+    """Inner unknowns of a neighbouring pose, to start from."""
 
-    Attributes
-    ----------
-    parameter : array, shape (positions, z_P)
-        Contact parameters on the flank, rad.
-    share : array, shape (positions, n_BR)
-        Parts of the total interference that the rollers' contacts on the race take.
-    known : KnownPins or None
-        Where the pins were, from which contact parameters are followed.
-    inner : Inner or None
-        Inner unknowns of the one system of all contacts.
-    """
-
-    parameter: FloatArray
-    share: FloatArray
-    known: KnownPins | None = None
+    parameter: FloatArray  # of contacts on the flank, rad, (positions, z_P)
+    share: FloatArray  # of the total interference on the race, (positions, n_BR)
+    known: KnownPins | None = None  # where the pins were
     inner: Inner | None = None
 
     @classmethod
@@ -504,9 +361,7 @@ def bearing_pushes(rollers: RollerState, cranks: int) -> ComplexArray:
 
 
 def bearing_moments(rollers: RollerState, rays: RollerRays, cranks: int) -> ComplexArray:
-    """Return what every crank bearing presses the lean of the disc with, x + iy, shape (positions, cranks), N·mm; zero where
-    rollers do not lean.
-    """
+    """Return the moment of every crank bearing on the lean of the disc, x + iy, N·mm, (positions, cranks)."""
     if rollers.leaning is None:
         return np.zeros((rays.direction.shape[0], cranks), dtype=complex)
     each = rollers.leaning.outer.moment * rays.direction

@@ -1,14 +1,7 @@
-r"""Flexibility of the ring of the pin wheel at the seats of its pins: a curved beam in closed form, or finite elements.
+"""Flexibility of the ring of the pin wheel at the seats of its pins: a curved beam in closed form, or plane finite elements.
 
-The plane finite-element ring (``ring.model = "fe"``) is read from the cache or derived once for each shape and kept there, like
-influence coefficients (`ltca.compliance.coefficient_files`). A file is for E b = 1 N/mm and knows no stiffness of bolts, so
-modulus, width and bolts can vary without a new derivation.
-
-What finite elements have at a seat itself, the law of a *loose* pin in its slot has as well, down to a circle of three radii
-(`ltca.laws.conforming`, a seat in an infinite body). It is taken off, in closed form: with Michell's solution of that table for
-the even part of the pressure :math:`p = \sum p_n \cos n\theta` of the unit force, and the same with sines,
-
-.. math:: u = \pi r^2 b / 4\mu \; (2 p_0^2 C_0 + \sum_{n \ge 1} p_n^2 C_n).
+A file of elements, from the cache or derived once for each shape, is for E b = 1 N/mm without bolts. Off comes the yield that the
+law of a loose pin in its slot has as well, u = π r² b/4μ (2 p₀² C₀ + Σ pₙ² Cₙ) by Michell (docs/theory/ring_elements.md).
 """
 
 from __future__ import annotations
@@ -42,13 +35,7 @@ MAX_KNOWN = 16
 
 
 def ring_flexibility(drive: Drive, lender: Drive | None = None) -> FloatArray | None:
-    """Return displacements of the seats of the wheel pins of a drive under unit forces there, mm/N; None where the ring is rigid.
-
-    Shape (z_P, 2, z_P, 2) by seat and component in the wheel; seats are evenly spaced. A ring of finite elements has the shape
-    of that of the `lender`, if one is given, a drive of nearly the same ring (`ltca.drive.ring_shape.nearly_same_ring`);
-    modulus, width and stiffness of the bolts are its own. Raises `CycloError` where it has to be derived and nothing is
-    installed for that.
-    """
+    """Return displacements of seats by unit forces, mm/N, (z_P, 2, z_P, 2), of elements shaped as the lender's; None if rigid."""
     if not has_ring_of_elements(drive):
         return beam_flexibility(drive)
     found = _of_elements(drive, drive if lender is None else lender)
@@ -151,12 +138,7 @@ def _of_slot(drive: Drive) -> FloatArray:
 def slot_yield(half_arc: float, poisson_ratio: float, datum: float) -> FloatArray:
     """Return the radial and tangential displacement of a seat in an infinite plate by a unit force on its wall, times E b.
 
-    The force acts as the normal pressure of `fem.coefficients.ring` on an arc of twice `half_arc`, rad, and the displacement is
-    the mean with the same weights, relative to the circle of `datum` radii of the seat; plane stress.
-
-    Examples
-    --------
-    The pressure 2F/(πrb) cos θ of a force outwards on half a seat:
+    The mean weighted by the pressure over twice `half_arc`, rad, relative to the circle of `datum` radii; on half a seat:
 
     >>> print(slot_yield(0.5 * pi, 0.3, 3.0).round(3))
     [0.837 0.802]

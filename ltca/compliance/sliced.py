@@ -1,8 +1,4 @@
-"""What contacts in slices are made of, loaded when a drive has them: ``sliced.SlicedLine``.
-
-The plane model, ``contact.slices = 1``, needs nothing of it, and a run of it should not wait for some ten modules. Whatever
-chooses between the two takes the width from here.
-"""
+"""Names of contacts in slices, loaded when a drive has them: the plane model should not wait for some ten modules."""
 
 from __future__ import annotations
 

@@ -1,13 +1,6 @@
-r"""What a solid cylinder with free ends yields at a contact, beyond one in plane strain.
+"""Yield of a solid cylinder with free ends at a contact beyond plane strain, κ e(ν, R/t) and 12/t² κ e′(ν, R/t).
 
-`ltca.compliance.near_field.carried_cylinder` is a shaft pin in plane strain, carried evenly by its cross-section. One that ends
-with its contact is free to stretch along its axis, and softer at its ends, where loads linear along the length are largest.
-Balanced by forces of its whole volume, of a mean displacement for an even load and of a mean rotation for a linear one, it
-yields :math:`\kappa\, e(\nu, R/t)` and :math:`12/t^2\,\kappa\, e'(\nu, R/t)` more, with the logarithm's unit
-:math:`\kappa = 2(1 - \nu^2)/(\pi E t)`.
-
-Both come from finite elements in three dimensions (``benchmarks/solid_cylinder.py`` prints the tables; patches of R/20): no
-closed form is known. e goes with :math:`\nu^2/(1 - \nu^2)` within 1 %, as from plane strain to plane stress.
+From finite elements in three dimensions (``benchmarks/solid_cylinder.py`` prints the tables; docs/theory/solid_bodies.md).
 """
 
 from __future__ import annotations
@@ -31,12 +24,8 @@ LINEAR = (
 
 
 def free_ends_of_cylinder(radius: float, length: float, poisson_ratio: float) -> tuple[float, float]:
-    """Return e and e′, what an even and a linear load find more than in plane strain, by κ and 12 κ/t².
+    """Return e and e′ of an even and a linear load; beyond R/t of 1/16 to 1 the ends of the table hold.
 
-    Beyond the table, R/t of 1/16 to 1, its ends hold; between and beyond Poisson's ratios the parabola through them.
-
-    Examples
-    --------
     >>> free_ends_of_cylinder(1.0, 4.0, 0.3)
     (0.1325, 0.1553)
     """

@@ -1,9 +1,6 @@
-r"""Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the stress they give.
+"""Stress along the walls of the disc by the loads on it: reading from the coefficient file, and the stress they give.
 
-At a wall without load the stress has one component, along the wall. It is linear in the loads of all contacts: the
-coefficients hold it at stations of flank, bore and hole walls, for a newton at each station of the influence coefficients
-(format in docs/theory/coefficients.md). Right under a contact the wall carries the contact's own pressure along itself, too;
-that part is not in the coefficients, so what they give varies smoothly along the wall and with the place of the load.
+The contact's own pressure along the wall under it is left out, so that stresses vary smoothly (docs/theory/coefficients.md).
 """
 
 from __future__ import annotations
@@ -23,15 +20,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StressCoefficients:
-    """Stress along the walls at stations of flank, bores and holes, for a newton at each station of the influence coefficients.
+    """Stress along the walls at stations of flank, bores and holes by a newton at each station of the influence coefficients."""
 
-    `walls` has the stations of the stress, `loaded` those of the loads in the same order; `stress`, tension positive, MPa/N, has
-    the shape (stress stations, stations).
-    """
-
-    walls: tuple[Boundary, ...]
-    loaded: tuple[Boundary, ...]
-    stress: FloatArray
+    walls: tuple[Boundary, ...]  # stations of the stress
+    loaded: tuple[Boundary, ...]  # those of the loads, in the same order
+    stress: FloatArray  # tension positive, MPa/N, shape (stress stations, stations)
 
     def placed(self, *, bores: int, steps: int, pattern: int, flank_turn: float) -> StressCoefficients:
         """Return the coefficients of the part as it stands in a disc, see `InfluenceCoefficients.placed_in`."""
@@ -57,12 +50,7 @@ def read_stress_coefficients(data: Labelled, loaded: tuple[Boundary, ...]) -> St
 def evaluate_wall_stress(
     coefficients: StressCoefficients, contacts: Sequence[tuple[FloatArray, FloatArray]]
 ) -> FloatArray:
-    """Return the stress along the walls at all stress stations, shape (positions, stress stations), MPa.
-
-    `contacts` has of flank, each bore and each hole the places (θ, or polar angles in the disc frame about its centre, rad) and
-    the loads into the disc, N, shape (positions, contacts). Loads in equilibrium get one answer whatever balanced the unit loads
-    when the coefficients were derived.
-    """
+    """Return the stress at all stress stations, MPa, (positions, stations), from places and loads into the disc of every wall."""
     positions = contacts[0][1].shape[0]
     rows = np.arange(positions)[:, None, None]
     loads = np.zeros((positions, coefficients.stress.shape[1]))

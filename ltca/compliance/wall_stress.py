@@ -1,8 +1,7 @@
-"""Stress in the disc under the loads found: along lobe roots, bore and hole walls, and in the wall under each contact.
+"""Stress in the disc along lobe roots, bore and hole walls where they are clear of contacts, and in the wall under each contact.
 
-Along a wall the stress is reported where the wall is *clear*: farther than four half-widths from every loaded contact on
-it. Nearer the contact's own stresses rule (`ltca.contact.subsurface`). The stress in the wall right under a contact, its
-own pressure left out, is what the disc adds to them: half of it to the largest shear stress below the surface.
+Nearer than four half-widths the contact's own stresses rule (`ltca.contact.subsurface`), to whose largest shear half of the
+stress under the contact adds (docs/theory/coefficients.md).
 """
 
 from __future__ import annotations
@@ -21,8 +20,7 @@ CLEAR_HALF_WIDTHS = 4.0
 """A wall is clear of a contact beyond this many of its half-widths."""
 
 REFINEMENT = 4
-"""Places on a wall for each stress station. On the paper's disc the largest stresses are then within 0.3 % (roots), 0.2 %
-(bore) and 1.1 % (holes) of those from twice the stations."""
+"""Places for each stress station: largest stresses of the paper's disc within 0.3 % (roots), 0.2 % (bore), 1.1 % (holes)."""
 
 POSITIONS_PER_CHUNK = 128
 """Positions evaluated at once: distances of all places from all contacts stay small."""
@@ -30,15 +28,11 @@ POSITIONS_PER_CHUNK = 128
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallProfile:
-    """Stress along one wall of the disc at places: θ on the flank, polar angles in the disc frame about its centre, rad.
-
-    `stress` and `clear` have the shape (positions, places): tension positive, MPa, under a contact without the contact's own
-    pressure; and whether a place is farther than four half-widths from every loaded contact on the wall.
-    """
+    """Stress along one wall of the disc at places: θ on the flank, polar angles in the disc frame about its centre, rad."""
 
     parameter: FloatArray
-    stress: FloatArray
-    clear: NDArray[np.bool_]
+    stress: FloatArray  # tension positive, MPa, without a contact's own pressure, shape (positions, places)
+    clear: NDArray[np.bool_]  # farther than four half-widths from every loaded contact
 
     def largest(self, places: NDArray[np.bool_] | slice = slice(None)) -> FloatArray:
         """Return the largest clear stress of each position among some places; not a number where none is clear."""
@@ -48,28 +42,12 @@ class WallProfile:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallStresses:
-    """Largest tensile stresses along the walls of the disc, and stresses under its contacts, MPa.
+    """Largest clear tensile stresses along walls and stresses under contacts, MPa; NaN where not known or nothing is clear."""
 
-    All are not a number where the coefficient file has no stresses. The stress along a wall is the largest one of the
-    clear places, tension positive; it is negative where all of them are compressed, and not a number where none is clear.
-
-    Attributes
-    ----------
-    root : array, shape (positions, lobes)
-        Along the flank about each lobe root, from crest to crest. Root k lies at θ = 2πk/z_C.
-    bore : array, shape (positions,)
-        Along the bore, the largest of several bores.
-    hole : array, shape (positions, z_PS)
-        Along each hole wall.
-    pin_contact, roller_contact, hole_contact : array, shape (positions, pairs)
-        Along the wall under each wheel pin, roller (crank after crank) and shaft pin, or where it would touch if it is open; the
-        contact's own pressure is left out.
-    """
-
-    root: FloatArray
-    bore: FloatArray
-    hole: FloatArray
-    pin_contact: FloatArray
+    root: FloatArray  # about each root θ = 2πk/z_C, from crest to crest, shape (positions, lobes)
+    bore: FloatArray  # largest of all bores, (positions,)
+    hole: FloatArray  # (positions, z_PS)
+    pin_contact: FloatArray  # under wheel pins, or where open ones would touch, (positions, pairs), as those below
     roller_contact: FloatArray
     hole_contact: FloatArray
 
@@ -86,10 +64,7 @@ class _PlacedContacts(NamedTuple):
 def wall_stresses(
     model: DiscModel, response: DiscResponse, pressures: ContactPressures, disc_rotation: FloatArray
 ) -> WallStresses:
-    """Return the largest stresses along the walls and the stresses under the contacts of a response and its pressures.
-
-    The rotation of the disc, rad, has shape (positions,).
-    """
+    """Return the stresses along walls and under contacts of a response and its pressures, by the disc's rotation, rad."""
     positions, lobes = disc_rotation.size, round(model.geometry.profile.reduction_ratio) - 1
     stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
@@ -115,10 +90,7 @@ def wall_profiles(
     *,
     refinement: int = REFINEMENT,
 ) -> tuple[WallProfile, ...]:
-    """Return the stress along flank, each bore and each hole wall; none where the coefficients have no stresses.
-
-    Arguments are those of `wall_stresses`; of so many places per stress station the first lies on it.
-    """
+    """Return the stress along flank, each bore and hole, at so many places per station; none without stresses in the file."""
     stress = None if model.coefficients is None else model.coefficients.stress
     if stress is None:
         return ()

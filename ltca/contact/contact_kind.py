@@ -25,29 +25,15 @@ END_STRETCH = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactKind:
-    """Data shared by all contacts of one kind.
+    """Data shared by all contacts of one kind."""
 
-    Attributes
-    ----------
-    length, contact_modulus : float
-        Length of the contact line, mm, and E*, MPa.
-    generator, lead : Relief or None, Disc or None
-        Crown and relief along the length, and the disc whose flank has a lead; None where they are straight.
-    symmetric : bool
-        Whether the separation is even along the profile (circles) or not (flanks).
-    cells : int
-        Cells over the half-width and over half the length.
-    free_ends : tuple of FreeEnds
-        Of the bodies, which the law in slices knows; half-spaces where there are none.
-    """
-
-    length: float
-    contact_modulus: float
-    generator: Relief | None = None
-    symmetric: bool = True
-    cells: int = CELLS
-    lead: Disc | None = None
-    free_ends: tuple[FreeEnds, ...] = ()
+    length: float  # of the contact line, mm
+    contact_modulus: float  # E*, MPa
+    generator: Relief | None = None  # crown and relief along the length; None where straight
+    symmetric: bool = True  # whether the separation is even along the profile (circles) or not (flanks)
+    cells: int = CELLS  # over the half-width and over half the length
+    lead: Disc | None = None  # whose flank has a lead; None where straight
+    free_ends: tuple[FreeEnds, ...] = ()  # of the bodies, for the law in slices; none of half-spaces
 
     def aligned_relief(self, z: ArrayLike) -> FloatArray:
         """Return by how much the profile alone falls short at heights above mid-width, mm."""
@@ -93,11 +79,7 @@ class ContactKinds:
         )
 
     def with_free_ends(self, drive: Drive, *, rigid_shaft_pins: bool) -> ContactKinds:
-        """Return the kinds of a drive with the ends of its bodies as they are.
-
-        Disc and race are as wide as the disc, rollers as long as they are, pins as long as their beams or, without, as wide as
-        the disc; what is under a sleeve has no part in the contact, and slices of a sleeve do not feel each other.
-        """
+        """Return the kinds with the ends of their bodies; pins are as long as their beams, or as wide as the disc."""
         parts, wide, long = drive.materials, drive.disc.thickness, drive.roller_length
         wheel, shaft = drive.pin_wheel, drive.pin_shaft
         disc, flank_pin, hole_pin = (wide, parts.disc), (wide, drive.flank_pin), (wide, drive.hole_pin)
@@ -105,6 +87,7 @@ class ContactKinds:
             flank_pin = (_length_about(drive, drive.wheel_pin_span), drive.flank_pin)
         if shaft is not None and shaft.beam is not None:
             hole_pin = (_length_about(drive, drive.shaft_pin_span), drive.hole_pin)
+        # What is under a sleeve has no part in the contact, and slices of a sleeve do not feel each other.
         sleeved = wheel.seat.kind == "sleeve", shaft is not None and shaft.seat.kind == "sleeve"
 
         def ending(kind: ContactKind, modulus: float, *bodies: tuple[float, Material] | None) -> ContactKind:
@@ -127,17 +110,12 @@ def _length_about(drive: Drive, span: float) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Separation:
-    """Separation of two surfaces about the point where they touch.
+    """Separation of two surfaces about the point where they touch, interpolated between one of some fixed places and the next."""
 
-    `departure` gives it at one of some fixed places, by its number, over the distance along the tangent, mm; the contact stands
-    the fraction `part` of the way from `place` to the next one, and its separation is interpolated between both. From the
-    effective radius ρ there, mm, the width of the contact is expected.
-    """
-
-    effective_radius: float
-    departure: Callable[[int, FloatArray], FloatArray]
+    effective_radius: float  # ρ, mm, by which the width is expected
+    departure: Callable[[int, FloatArray], FloatArray]  # at a numbered place, over the distance along the tangent, mm
     place: int = 0
-    part: float = 0.0
+    part: float = 0.0  # fraction of the way from `place` to the next one
 
     @property
     def weights(self) -> FloatArray:

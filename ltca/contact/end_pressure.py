@@ -1,9 +1,6 @@
-"""The largest pressure of a contact and its ratio to that at mid-width.
+"""The largest pressure of a contact, the largest mean over a hundredth of the length, and its ratio to that at mid-width.
 
-At the end of an unrelieved roller the half-space pressure is singular: on a grid it depends on the end cell. So the largest
-pressure is defined as the largest mean over a hundredth of the length (`ltca.contact.contact_kind.ContactKind.end_cell`),
-on any grid. For cylinders its ratio to mid-width is a function of L/√(ρδ) alone; profiled contacts are sampled over the
-approaches and radii that occur.
+The half-space pressure at the end of an unrelieved roller is singular and would depend on the end cell.
 """
 
 from __future__ import annotations
@@ -27,10 +24,7 @@ _LIGHTEST = 1e-2  # by the largest approach: lighter contacts take the ratio the
 
 
 def largest_pressure(solved: PatchPressure, stretch: float) -> float:
-    """Return the largest pressure of a patch symmetric about mid-width as a mean over a stretch along the width, mm, in MPa.
-
-    It is at least the pressure at mid-width.
-    """
+    """Return the largest mean pressure over a stretch along the width, mm, of a patch symmetric about mid-width, MPa."""
     edges = solved.grid.y_edges
     end = float(edges[-1])
     stretch = min(stretch, end)
@@ -48,10 +42,7 @@ def _ratio(kind: ContactKind, approach: float, radius: float) -> float:
 
 
 def tabulate_cylinder_ratio(cells: int) -> tuple[FloatArray, FloatArray]:
-    """Return nodes of ln(L/√(ρδ)), ascending, and the ratio of cylinders there, solved on contact grids.
-
-    `cells` are those over the half-width and over half the length.
-    """
+    """Return ascending nodes of ln(L/√(ρδ)) and the ratio of cylinders there, on grids of `cells` over half-width and length."""
     kind = ContactKind(length=1.0, contact_modulus=1.0, generator=None, symmetric=True, cells=cells)
     nodes = np.linspace(np.log(_SHORTEST), np.log(_LONGEST), _NODES)
     return nodes, np.array([_ratio(kind, float(np.exp(-node)), float(np.exp(-node))) for node in nodes])
@@ -77,10 +68,7 @@ def find_cylinder_ratio(kind: ContactKind, half_width: FloatArray) -> FloatArray
 
 
 def largest_pressure_ratio(kind: ContactKind, approach: FloatArray, effective_radius: FloatArray) -> FloatArray:
-    """Return the ratio of the largest pressure to that at mid-width, 1 where open.
-
-    The approach δ has the shape (positions, pairs), mm; the effective radius ρ, mm, broadcasts to it.
-    """
+    """Return the ratio of the largest pressure to that at mid-width, 1 where open, by δ, mm, (positions, pairs), and ρ, mm."""
     ratio, closed = np.ones(approach.shape), approach > 0.0
     if not np.any(closed):
         return ratio

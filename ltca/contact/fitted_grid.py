@@ -1,9 +1,7 @@
 """Contact grids that fit: shapes in steps of half-width and reach, and the pressure of a contact on the one that fits it best.
 
-An influence matrix depends on the shape of its grid alone, not on its size. Half-width and reach of a contact are rounded to
-steps of 5 % (rungs) and grids have unit length, so one small set of matrices serves all contacts of a drive. The rung follows
-from the half-width *expected* at the approach, never from earlier solutions. `validation.methods.grids` balances drives on such
-grids.
+Influence matrices depend on the shape of a grid alone: half-width and reach are rounded to steps of 5 % (rungs), so that few
+serve all contacts of a drive. The rung follows from the half-width expected at the approach, not from earlier solutions.
 """
 
 from __future__ import annotations
@@ -31,13 +29,11 @@ from ltca.geometry.length_profile import Relief
 RUNG = 0.05
 """Step of the ladder in ln(half-width)."""
 BLEND = 0.05
-"""Part of a rung about each boundary over which the grids on both sides are blended for a load that is continuous with its slope:
-their loads differ by 1e-4, so blending adds 1 % to the slope, and one contact in twenty costs two grids."""
+"""Part of a rung about each boundary over which grids are blended: loads, which differ by 1e-4, keep a continuous slope."""
 SHADES = 5
 """Steps per rung of the half-width by which initial contact cells of cylinders are kept."""
 END_GRADING = 2.5
-"""Grading of the cells along an unrelieved length (`ltca.contact.pressure_cells.graded_edges`): the singular end then
-errs by 1e-4 in the load with 12 cells."""
+"""Grading of the cells along an unrelieved length (`graded_edges`): the singular end errs by 1e-4 in the load with 12 cells."""
 FREE_GRADING = 1.25
 """The same of contacts that end within a profile, where pressure falls to zero by itself."""
 FIT = 0.08
@@ -45,10 +41,7 @@ FIT = 0.08
 
 
 class GridRung(NamedTuple):
-    """Shape of a grid in steps of `RUNG`: ln(half-width/length), and ln(body length/patch length).
-
-    The second is that of a profiled contact that ends before the body does.
-    """
+    """Shape of a grid in steps of `RUNG`: ln(half-width/length), and ln(body length/patch length) of profiles that end before."""
 
     rung: int
     reach_rung: int
@@ -113,10 +106,7 @@ def _cylinder_cells(width: int, rung: GridRung, cells: int, symmetric: bool) -> 
 def unit_separations(
     grid: PatchGrid, separation: Separation, length: float, relief: ReliefFunction, middle: float = 0.0
 ) -> FloatArray:
-    """Return the mean separation of every cell at the places of a separation, by patch length, shape (cells, places).
-
-    The patch has a length and a middle along the width, mm; `relief` is that along the width.
-    """
+    """Return the mean separation of every cell of a patch of a length about `middle`, by the length, shape (cells, places)."""
     points = gauss_points(grid.x_edges)
     units = np.empty((*grid.shape, separation.weights.size))
     for number in range(units.shape[2]):
@@ -128,10 +118,7 @@ def unit_separations(
 
 
 def solve_fitted(kind: ContactKind, approach: float, effective_radius: float, departure: Departure) -> PatchPressure:
-    """Return the pressure over a contact on the grid that fits its half-width; approach δ and effective radius ρ are in mm.
-
-    `departure` gives the separation over the distance along the tangent, both in mm.
-    """
+    """Return the pressure over a contact on the grid that fits its half-width; approach, effective radius and departure in mm."""
     separation = Separation(effective_radius=effective_radius, departure=lambda _, x: departure(x))
     reach = int(np.floor(find_reach_place(kind.length, kind.generator, approach)))
     length = find_patch_length(kind.length, reach)

@@ -1,7 +1,4 @@
-"""Hertz' line contact (K. L. Johnson, *Contact Mechanics*, 1985, section 4.2): half-width and peak pressure by the load.
-
-Loads are per unit length, N/mm; E* is the contact modulus, ρ the effective radius.
-"""
+"""Hertz' line contact (K. L. Johnson, *Contact Mechanics*, 1985, section 4.2) by the load per unit length, N/mm, E* and ρ."""
 
 from __future__ import annotations
 

@@ -1,13 +1,7 @@
-"""Influence coefficients of uniformly pressed rectangles on an elastic half-space.
+"""Influence coefficients of uniformly pressed rectangles on an elastic half-space: ∫∫ 1/r dA_i dA_j in closed form, mm³.
 
-A coefficient is the integral of the Boussinesq kernel 1/r over two rectangles (Galerkin), in closed form: the mean
-displacement of the receiving cell times its area. Collocation with the displacement of points (Love) would give
-``area_i A_ij != area_j A_ji`` as soon as cells differ in size; the mean value is symmetric and positive definite because
-the kernel is. Matrices are in the area-weighted form ``A[i, j] = area_i × mean displacement of i by unit pressure on j``
-(1/r integrated twice: mm³), and the energy of a pressure field is ``p·A·p / (2 π E*)`` exactly.
-
-The tensor grids have uniform cells along x (the profile), graded ones along y (the width). Only lags in
-x matter then, and quarter or half domains follow by images.
+Galerkin means, unlike Love's displacements of points, are symmetric and positive definite on any grid: the energy of pressures
+p is p·A·p/(2 π E*). Cells are uniform along x, so only lags in x matter; quarter or half domains follow by images.
 """
 
 from __future__ import annotations
@@ -124,11 +118,9 @@ def _lagged_block(lags: FloatArray, width: float, y_edges: FloatArray, sign: flo
 def lagged_influence(
     cell_width: float, lag_count: int, y_edges: FloatArray, *, mirrored: bool, end_factor: float = 0.0
 ) -> FloatArray:
-    """Return ∫∫ 1/r dA_i dA_j between cells of a tensor grid with uniform x cells, mm³, shape (lag_count, n, n).
+    """Return ∫∫ 1/r dA_i dA_j of a grid of uniform x cells by the lag in x, mm³, shape (lag_count, n, n).
 
-    Axis 0 is the lag in x, 0, 1, … cells of `cell_width` (mm); `y_edges` are the n + 1 ascending edges along y, mm.
-    `mirrored` adds the images of the cells in the plane y = 0, where `y_edges` must then start; `end_factor` times the images in
-    the planes of their ends, y = ±`y_edges[-1]`, are added for free ends (`ltca.contact.free_end`).
+    `mirrored` adds images in y = 0, where `y_edges`, mm, start; `end_factor` times those in the ends y = ±`y_edges[-1]`.
     """
     lags = cell_width * np.arange(lag_count, dtype=float)
     total = np.zeros((lag_count, y_edges.size - 1, y_edges.size - 1))
@@ -141,10 +133,7 @@ def lagged_influence(
 
 
 def end_images(cell_width: float, y_edges: FloatArray, end_plane: float) -> FloatArray:
-    """Return ∫∫ 1/r dA_i dA_j between strips of one width and their images in the planes y = ±`end_plane`, mm³, shape (n, n).
-
-    `y_edges` are the n + 1 ascending edges along y between the planes, mm.
-    """
+    """Return ∫∫ 1/r dA_i dA_j between strips and their images in the planes y = ±`end_plane`, mm, both together, mm³, (n, n)."""
     lags = np.zeros(1)
     total = sum(
         _lagged_block(lags, cell_width, y_edges, -1.0, shift)[0] for shift in (2.0 * end_plane, -2.0 * end_plane)
@@ -160,13 +149,10 @@ def assemble_influence_matrix(
     symmetric_y: bool = False,
     end_factor: float = 0.0,
 ) -> FloatArray:
-    """Return the area-weighted influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
+    """Return the influence matrix ∫∫ 1/r dA_i dA_j of a tensor grid, mm³, shape (nx·ny, nx·ny), x-major.
 
-    It is symmetric and positive definite; divided by π E* it gives displacement moments. Edges are ascending, mm: uniform along
-    the profile (x), of any spacing along the width (y). A symmetric direction is given by its positive half, edges from 0: the
-    images of the cells are added, so that the matrix acts on that half alone and ``p·A·p / (2 π E*)`` is the energy of one half
-    (or quarter). Other edges are refused (ValueError). Free ends at y = ±`y_edges[-1]` add their images times `end_factor`
-    (`ltca.contact.free_end`).
+    Symmetric directions are given by their positive half, edges from 0 (else ValueError), and images added: p·A·p/(2 π E*) is the
+    energy of that half. x edges are uniform; free ends at y = ±`y_edges[-1]` add their images times `end_factor`.
     """
     widths = np.diff(x_edges)
     count, width = widths.size, float(np.mean(widths))

@@ -1,13 +1,7 @@
-"""Contact of two half-spaces over a rectangular patch: grid, solution, loads and pressures.
+"""Contact of two half-spaces over a rectangular patch, |y| ≤ length/2 along the width: grid, solution, loads and pressures.
 
-The patch lies at |y| ≤ length/2 along the width and is as wide as needed along the profile x. Pressure is constant
-in each cell; displacement and separation enter as cell means (Galerkin), so the discrete solution is the minimum
-of the exact potential over the discrete pressures: the error of the energy is quadratic in that of the pressures (its order
-is measured in ``tests/analytic``).
-
-The x cells are uniform with the expected edge of the contact on a cell edge; the y cells shrink toward the ends, where the
-pressure of an unrelieved body grows like one over the square root of the distance and the contact is wider, for which the
-grid has room.
+Pressure is constant in each cell, displacement and separation are cell means (Galerkin): the error of the energy is quadratic in
+that of the pressures. x cells are uniform, with the expected edge on a cell edge; y cells shrink toward singular ends.
 """
 
 from __future__ import annotations
@@ -25,7 +19,7 @@ from ltca.contact.unilateral import solve_unilateral_contact
 ReliefFunction = Callable[[FloatArray], FloatArray]
 
 GRID_ROOM = 1.6
-"""Width of the grid by the expected half-width: the contact of an unrelieved end is up to 1.56 times as wide as at mid-width."""
+"""Width of the grid by the expected half-width: unrelieved ends are up to 1.56 times as wide as mid-width."""
 # The edge of a short patch lies beyond 2√⟨x²⟩ by this over λ (measured for λ from 0.25 to 1; negligible above).
 _SHORT_EDGE = 0.007
 # Errors of constant cells for a Hertz profile whose edge lies on a cell edge, per (cell width/half-width)², measured
@@ -41,11 +35,7 @@ def gauss_points(edges: FloatArray) -> FloatArray:
 
 
 def graded_edges(length: float, cells: int, grading: float) -> FloatArray:
-    """Return edges of half the width, 0 … length/2, mm, with cells that shrink toward the end like a power law.
-
-    The last cell measures ``length/2 · cells**(-grading)``; grading 1 is uniform, 4 resolves the square-root
-    singularity at an unrelieved end as well as the smooth middle.
-    """
+    """Return edges 0 … length/2, mm, the last cell length/2 · cells^−grading; 1 is uniform, 4 resolves unrelieved ends."""
     step = np.linspace(0.0, 1.0, cells + 1)
     return np.asarray(0.5 * length * (1.0 - (1.0 - step) ** grading))
 
@@ -62,17 +52,13 @@ def end_grading(slenderness: float) -> float:
 
 @dataclass(frozen=True)
 class PatchGrid:
-    """Tensor grid over a patch, whole or the positive half in either direction, by its edges along profile (x) and width (y), mm.
-
-    Edges along x are uniform; those of a symmetric direction begin at 0. Bodies whose free ends are those of the patch have
-    images in them of the weight `end_factor` (`ltca.contact.free_end`).
-    """
+    """Tensor grid over a patch, or its positive half in symmetric directions, by its edges along profile and width, mm."""
 
     x_edges: FloatArray
     y_edges: FloatArray
     symmetric_x: bool = True
     symmetric_y: bool = True
-    end_factor: float = 0.0
+    end_factor: float = 0.0  # weight of images in free ends at those of the patch
 
     @classmethod
     def fitted(
@@ -166,10 +152,7 @@ class PatchPressure:
 
     @property
     def half_width(self) -> float:
-        """Contact half-width at mid-width, mm: 2 √⟨x²⟩ with the pressure as weight (exact for Hertz).
-
-        x is measured from the centre of pressure when the patch is not symmetric.
-        """
+        """Contact half-width at mid-width, mm: 2 √⟨x²⟩ about the centre, with the pressure as weight (exact for Hertz)."""
         x, p = self.grid.x_edges, self._at_mid_width(self.pressure)
         total = float(np.sum(p))
         if total <= 0.0:
@@ -226,12 +209,7 @@ class PatchSolution(PatchPressure):
 def solve_patch(
     grid: PatchGrid, separation: FloatArray, contact_modulus: float, approach: float, *, start: BoolArray | None = None
 ) -> PatchSolution:
-    """Return the pressure over a patch at an approach of distant points, mm; nothing touches where the separation exceeds it.
-
-    `separation` is the mean separation of the undeformed bodies over each cell, mm (`PatchGrid.cell_means`), `contact_modulus`
-    E*, MPa; `start` are initial contact cells, by default those where the undeformed bodies overlap. Arrays have the shape (nx,
-    ny). ConvergenceError if the contact set does not settle.
-    """
+    """Return the pressure over a patch at an approach, mm, from the mean separations of its cells, mm, (nx, ny), and E*, MPa."""
     penetration = (approach - separation.ravel()) * grid.areas.ravel()
     solution = solve_unilateral_contact(
         grid.influence, penetration / (1.0 / (np.pi * contact_modulus)), start=None if start is None else start.ravel()
@@ -242,10 +220,7 @@ def solve_patch(
 
 
 def expected_half_width(length: float, effective_radius: float, approach: float) -> float:
-    """Return a first guess of the half-width at mid-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3.
-
-    From δ = q/(π E*) (1 + 2 ln(length/b) + ln 4 …) for a Hertz strip of even load q, solved for b.
-    """
+    """Return a first guess of the half-width of an uncrowned contact, mm: 1 to 4 % high for λ > 3, 16 % at λ = 0.3."""
     scale = float(np.sqrt(effective_radius * approach))
     slenderness = length / scale
     # b²/(ρδ) = 4/(2 ln(2λ/b̂) + 1), iterated; short patches tend to the footprint of the undeformed bodies, √2.
@@ -268,13 +243,10 @@ def solve_cylinder_patch(
     end_factor: float = 0.0,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
-    """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width.
+    """Return the contact of two cylinders, symmetric in x and y, on a quarter grid fitted to the half-width; mm and MPa.
 
-    Length, effective radius and approach at mid-width, which is positive, are in mm, E* in MPa; `relief` is that of the profile
-    along the width, even, mm. There are `cells` over the half-width and over half the length, with the edge of the contact
-    expected at `half_width`, mm, by default from a grid of half as many cells, and the exponent `grading` along y
-    (`graded_edges`). `end_factor` is the weight of images in free ends at ±length/2 (`ltca.contact.free_end`), 0 the half-space.
-    `start` is the solution on the grid of half as many cells, for the initial contact cells.
+    By default the half-width is that of a grid of half as many `cells`, whose solution may be given as `start`; `relief` is even
+    along the width, `end_factor` weighs images in free ends at ±length/2.
     """
     slenderness = length / float(np.sqrt(effective_radius * approach))
     exponent = end_grading(slenderness) if grading is None else grading
@@ -306,11 +278,7 @@ def solve_cylinder_patch(
 def extrapolate(
     solve: Callable[..., PatchSolution], cells: int, half_width: float, energy_gain: float, field_gain: float
 ) -> tuple[float, ...]:
-    """Return energy, load, mid-width pressure and half-width of a contact on cells of no size (Richardson), from two grids.
-
-    `solve` takes `cells`, `half_width` and `start` as `solve_cylinder_patch`: both grids cut the contact at the same place. A
-    gain 1/(2ᵖ − 1) belongs to the order of convergence p, that of energy and load or that of pressure and half-width.
-    """
+    """Return energy, load, mid-width pressure and half-width on cells of no size: Richardson's gains 1/(2ᵖ − 1), two grids."""
     coarse = solve(cells=cells // 2, half_width=half_width)
     fine = solve(cells=cells, half_width=half_width, start=coarse)
     gains = {"energy": energy_gain, "load": energy_gain, "mid_pressure": field_gain, "half_width": field_gain}

@@ -1,9 +1,7 @@
-r"""Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races.
+"""Closed forms of round bodies in plane elasticity, the references of wheel pins, rollers and races.
 
-A cylinder under two opposite loads (Johnson), and a round body held along an inner circle and loaded by a patch on its outer
-one, in Kolosov's potentials (Muskhelishvili, *Some Basic Problems of the Mathematical Theory of Elasticity*, § 56–60): with
-:math:`\varphi = A \ln z + \sum a_n z^n` and :math:`\psi = -\kappa A \ln z + \sum b_n z^n` the harmonics :math:`\pm m` of
-displacement and traction take four coefficients, which the held circle and the load give.
+Kolosov's potentials φ = A ln z + Σ aₙ zⁿ, ψ = −κ A ln z + Σ bₙ zⁿ (Muskhelishvili, *Some Basic Problems of the Mathematical
+Theory of Elasticity*, § 56–60): four coefficients for the harmonics ±m, which held circle and load give.
 """
 
 from __future__ import annotations
@@ -16,26 +14,18 @@ from ltca.arrays import FloatArray
 RESOLUTION = 60.0
 """Number of harmonics times half-width over radius: the truncated rest falls with the cube, to 1e-6 of the approach."""
 NARROW = 0.01
-"""Half-width over radius below which the approach at the patch follows the logarithm of the width; elsewhere it is the same
-but for some 0.3 (b/R)²."""
+"""Half-width over radius below which the approach follows the logarithm of the width, but for some 0.3 (b/R)²."""
 
 
 def compressed_cylinder(radius: float, half_width: float) -> float:
-    r"""Return how far a cylinder yields at each of two opposite loads, relative to its centre, as multiple of the unit.
-
-    Johnson, *Contact Mechanics* (1985), Eq. 5.57: :math:`\ln(4R/b) - 1/2` at the middle of a semi-elliptic
-    pressure (both ends, each relative to the centre); the pressure-weighted mean over the patch is 1/4 less.
-    """
+    """Return the yield of a cylinder at each of two opposite loads, ln(4R/b) − 3/4 of the unit (Johnson, Eq. 5.57, less 1/4)."""
     return float(np.log(4.0 * radius / half_width) - 0.75)
 
 
 def held_ring_approach(inner: float, outer: float, half_width: float, kolosov: float, angle: FloatArray) -> FloatArray:
-    r"""Return approaches at angles from a loaded patch, as multiple of 2(1 − ν²)/(πEt).
+    """Return approaches at angles, rad, from a patch on a ring held inside, as multiple of 2(1 − ν²)/(πEt); lengths in mm.
 
-    Load and measure are those of a coefficient file: a semi-elliptic pressure along the wall, in the direction of the normal at
-    its middle, and the mean of the displacement with the same weights. The radii of the held and of the loaded circle and the
-    half-width of the patches along the wall are in mm, angles between load and place in rad, shape (m,), as the approaches,
-    which are positive into the body. Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
+    Load and measure are as in coefficient files; Kolosov's constant is 3 − 4ν in plane strain, (3 − ν)/(1 + ν) in plane stress.
     """
     width, ratio = max(half_width / outer, NARROW), inner / outer
     count = max(int(RESOLUTION / width), 64)

@@ -1,12 +1,7 @@
-"""Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929).
+"""Stresses in a half-space below a contact patch: uniformly pressed rectangles summed (Love 1929; Johnson, Eq. 3.10).
 
-With V = ∫∫ 1/r and χ = ∫∫ ln(z + r) over the rectangle (Boussinesq's potentials per unit pressure) the stresses are
-
-    σx = (2ν V_z − (1−2ν) χ_xx − z V_xx)/2π,  σy alike,  σz = (V_z − z V_zz)/2π,
-    τxy = −((1−2ν) χ_xy + z V_xy)/2π,  τxz = −z V_xz/2π,  τyz = −z V_yz/2π
-
-(Johnson, Contact Mechanics, Eq. 3.10). The derivatives are written so that nothing cancels when the rectangle is
-long: every term is a corner function that stays of order one.
+With V = ∫∫ 1/r and χ = ∫∫ ln(z + r): σx = (2ν V_z − (1−2ν) χ_xx − z V_xx)/2π, σy alike, σz = (V_z − z V_zz)/2π, τxy = −((1−2ν)
+χ_xy + z V_xy)/2π, τxz = −z V_xz/2π, τyz = −z V_yz/2π, in corner functions of order one: nothing cancels.
 """
 
 from __future__ import annotations
@@ -30,11 +25,7 @@ def rectangle_stress(
     half_length_y: ArrayLike,
     poisson_ratio: float,
 ) -> FloatArray:
-    """Return the stress tensor below a rectangle under unit pressure, centred on the origin, shape (..., 6).
-
-    Points x, y and depth > 0 and the half sides are in mm; ν is that of the body. Components are σx, σy, σz, τxy, τxz, τyz per
-    unit pressure, compression negative, z into the body.
-    """
+    """Return σx, σy, σz, τxy, τxz, τyz below a rectangle about the origin by unit pressure, compression negative, (…, 6)."""
     x, y, z, a, b = np.broadcast_arrays(
         *(np.asarray(value, dtype=float) for value in (x, y, depth, half_length_x, half_length_y))
     )
@@ -60,10 +51,7 @@ def rectangle_stress(
 def patch_stress(
     solution: PatchPressure, x: ArrayLike, y: ArrayLike, depth: ArrayLike, poisson_ratio: float
 ) -> FloatArray:
-    """Return the stress tensor at points x, y and depth > 0, mm, below a solved patch, as `rectangle_stress`, MPa.
-
-    ν is that of the body in which the points lie.
-    """
+    """Return the stresses at points, mm, below a solved patch in a body of this ν, as `rectangle_stress`, MPa."""
     x, y, z = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in (x, y, depth)))
     grid = solution.grid
     inside = solution.contact
@@ -102,11 +90,7 @@ class SubsurfaceShear(NamedTuple):
 
 
 def find_subsurface_shear(solution: PatchPressure, poisson_ratio: float) -> SubsurfaceShear:
-    """Return the largest shear stress on the normal through the pressure peak at mid-width, and its depth.
-
-    Depths from 0.2 to 2.5 half-widths are scanned and the maximum is refined by a parabola. ν is that of the body in which the
-    stress is sought; nothing touching at mid-width is refused (ValueError).
-    """
+    """Return the largest shear stress on the normal through the pressure peak at mid-width; ValueError where nothing touches."""
     half_width = solution.half_width
     if half_width <= 0.0:
         raise ValueError("no contact at mid-width: there is no subsurface shear to find")
@@ -127,15 +111,10 @@ LINE_SHEAR_DEPTH = 0.7861514
 
 
 def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> FloatArray:
-    """Return the largest shear stress below a line contact in a body with a stress along its wall, MPa.
+    """Return the largest shear stress below a line contact of peak pressure p0 in a body with a stress along its wall, MPa.
 
-    Zero where nothing presses. In plane strain the shear stress on the axis is half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²))
-    (Johnson, Eq. 4.45 and 4.46), and a stress along the wall adds to σx equally at every depth: half of it to the shear stress.
-    `wall_stress` is the stress along the wall at the contact without that of the contact, tension positive, MPa;
-    `peak_pressure` is p0, MPa.
+    Half of σx − σz = 2 p0 ζ (1 − ζ/√(1 + ζ²)) in plane strain (Johnson, Eq. 4.45 and 4.46), and half of the wall's.
 
-    Examples
-    --------
     >>> float(line_contact_shear(1000.0, -20.0).round(2))
     290.28
     """
@@ -144,13 +123,10 @@ def line_contact_shear(peak_pressure: ArrayLike, wall_stress: ArrayLike) -> Floa
 
 
 def line_contact_shear_at(peak_pressure: ArrayLike, half_width: ArrayLike, depth: ArrayLike) -> FloatArray:
-    """Return the largest shear stress at and below a depth, mm, under the middle of a line contact, MPa.
+    """Return the largest shear stress at and below a depth, mm, under a line contact, MPa (Johnson, Eq. 4.46 and 4.47).
 
-    Zero where nothing presses. On the axis it is p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, which grows to `LINE_SHEAR` p0 at
-    0.786 half-widths and falls below (Johnson, Contact Mechanics, 1985, Eq. 4.46 and 4.47); p0 is in MPa, the half-width in mm.
+    p0 (ζ − ζ²/√(1 + ζ²)), ζ = depth/half-width, grows to `LINE_SHEAR` p0 and falls below.
 
-    Examples
-    --------
     >>> line_contact_shear_at(1000.0, 0.2, [0.05, 0.6]).round(1)
     array([300.3, 154. ])
     """

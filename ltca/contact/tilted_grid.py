@@ -1,13 +1,7 @@
 """Contacts that tilt, solved on grids over their whole width: load and moment by approach and tilt, with derivatives.
 
-As `ltca.contact.fitted_grid`, from which cells and ladder of widths come, but without symmetry along the width, and the patch is
-where the undeformed surfaces overlap, [z₁, z₂]: no contact reaches beyond. It moves steadily with approach and tilt, and so do
-load and moment; only widths are on a ladder (every second rung, blended), whose matrices serve patches of every length. Cells
-shrink toward an end of the line that carries more than toward one that the contact does not reach; near the boundary of the two
-load and moment are blended as well.
-
-While the same cells of the same patch touch, pressure is linear in approach, tilt and separation, p = δ A⁻¹1 + θ A⁻¹z − A⁻¹h, and
-needs no further factorisation.
+The patch is where the undeformed surfaces overlap and moves steadily with the pose; only widths are on a ladder, blended as in
+`ltca.contact.fitted_grid`. While the same cells touch, p = δ A⁻¹1 + θ A⁻¹z − A⁻¹h needs no further factorisation.
 """
 
 from __future__ import annotations
@@ -46,7 +40,7 @@ class GridShape(NamedTuple):
 
 
 class Patch(NamedTuple):
-    """Where undeformed surfaces overlap along the width, mm, how deep at most, mm, and at the ends of the line by the deepest."""
+    """Overlap of undeformed surfaces along the width, mm, its depth, mm, and the depth at the ends of the line by that."""
 
     lower: float
     upper: float
@@ -71,19 +65,14 @@ class Patch(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TiltedPiece:
-    """Coefficients of a contact on one grid with its contact cells held: linear in approach, tilt and separation.
-
-    It belongs to the grid of a shape, a place of the separation (`ltca.contact.contact_kind.Separation`) and a patch, whose
-    depth does not matter. `rate` and `opening_rate`, shape (cells, 2 + places), are the pressure by E*, and the opening, per
-    approach in the middle of the patch by its length, per tilt, and per separation at each place, by which it is less.
-    """
+    """Coefficients of a contact on one grid and patch with its contact cells held: linear in approach, tilt and separation."""
 
     shape: GridShape
-    place: int
+    place: int  # of the separation
     patch: Patch
     active: BoolArray
-    rate: FloatArray
-    opening_rate: FloatArray
+    rate: FloatArray  # pressure by E* per closing (`Patch.closing`), shape (cells, 2 + places)
+    opening_rate: FloatArray  # opening by the same
 
     def pressure(self, closing: FloatArray) -> FloatArray:
         """Return pressures by E*, from approach and tilt as above and the weights of the places, negative."""
@@ -100,10 +89,7 @@ class TiltedPiece:
 
 
 class TiltedPress(NamedTuple):
-    """A pressed contact: load and moment with their derivatives, N, mm and rad, its energy, N·mm, and what is behind it.
-
-    Of the grids that are blended `patch` is the pressure on the one with the largest share.
-    """
+    """A pressed contact: load and moment with their derivatives, N, mm, rad, energy, N·mm, and the pressure on its main grid."""
 
     load: float
     moment: float
@@ -164,10 +150,7 @@ def find_patch(kind: ContactKind, approach: float, tilt: float) -> Patch | None:
 def press_tilted(
     kind: ContactKind, separation: Separation, approach: float, tilt: float, start: Sequence[TiltedPiece] = ()
 ) -> TiltedPress | None:
-    """Return load and moment of a contact at an approach in the middle of its width, mm, and a tilt, rad; None where open.
-
-    `start` are the pieces of a neighbouring pose: they save time and do not change the result.
-    """
+    """Return a contact at an approach in its middle, mm, and a tilt, rad; `start`, pieces nearby, saves time. None where open."""
     patch = find_patch(kind, approach, tilt)
     if patch is None:
         return None

@@ -1,9 +1,7 @@
-"""Frictionless unilateral contact: pressures that never pull and surfaces that never overlap.
+"""Frictionless unilateral contact: p ≥ 0, w = A p − penetration ≥ 0, p·w = 0 for a symmetric positive definite A.
 
-Find p with ``p ≥ 0``, ``w = A p − penetration ≥ 0`` and ``p·w = 0`` for a symmetric positive definite A, the minimum of
-``½ p·A·p − penetration·p`` over p ≥ 0, which is unique. Block principal pivoting finds it exactly: release every cell that
-pulls, add every cell that overlaps, solve again. Exchange in blocks may cycle in principle, so when the number of offending
-cells has not fallen for a few steps single cells are exchanged by Murty's rule (the one of highest index), which terminates.
+Block principal pivoting releases every cell that pulls, adds every one that overlaps and solves again; where the number of
+offending cells does not fall, Murty's rule exchanges the last one alone, which terminates.
 """
 
 from __future__ import annotations
@@ -22,17 +20,12 @@ _BLOCK_TRIALS = 4
 
 
 class UnilateralSolution(NamedTuple):
-    """Solution of a unilateral contact problem.
-
-    Pressures are non-negative, zero outside the `active` cells, which are in contact. `rate` solves A q = load_direction on the
-    contact, zero outside: the exact tangent of the pressure when the penetration grows by that, all zeros when no direction was
-    given. `history` has the number of offending cells before each solve.
-    """
+    """Solution of a unilateral contact problem."""
 
     pressure: FloatArray
-    active: BoolArray
-    rate: FloatArray
-    history: tuple[int, ...]
+    active: BoolArray  # cells in contact
+    rate: FloatArray  # A⁻¹ load_direction on the contact, zero outside and without a direction
+    history: tuple[int, ...]  # offending cells before each solve
 
 
 def solve_unilateral_contact(
@@ -44,14 +37,8 @@ def solve_unilateral_contact(
 ) -> UnilateralSolution:
     """Solve p ≥ 0, A p − penetration ≥ 0, p·(A p − penetration) = 0 exactly by block principal pivoting.
 
-    A is `influence`, symmetric positive definite, shape (n, n); `penetration` is the overlap of the undeformed bodies
-    (area-weighted if A is), and contact cells are initially `start`, by default those where it is positive. `load_direction`,
-    shape (n,) or (n, directions), asks for the tangent `rate`. ConvergenceError if A is not positive definite on a contact set,
-    or the iterations run out; its history is the number of offending cells.
-
-    References
-    ----------
-    J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587 (block principal pivoting with Murty's rule).
+    J. J. Júdice, F. M. Pires, Comput. Oper. Res. 21 (1994) 587. `load_direction`, (n,) or (n, directions), asks for `rate`.
+    ConvergenceError if A is not positive definite on a contact set, or iterations run out.
     """
     from scipy.linalg import lapack  # 0.1 s to import; laws from tables solve no cells
 

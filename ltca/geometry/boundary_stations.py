@@ -1,12 +1,7 @@
-r"""Stations of a closed boundary, uniform in a periodic parameter, and the interpolation between them.
+"""Stations of a closed boundary, uniform in a parameter t of period 2π, and the interpolation between them.
 
-Along the flank of a disc of :math:`z` teeth what is interpolated changes fastest in the roots, :math:`\theta = 2\pi k/z`.
-There the stations stand closer: they are uniform in a parameter :math:`t` with
-
-.. math:: \theta = t - \frac{a}{z} \sin(z t), \qquad 0 \le a < 1,
-
-so that their distance is :math:`1 - a` of the mean one in the roots and :math:`1 + a` of it at the tips. This is Kepler's
-equation for the anomalies :math:`E = z t` and :math:`M = z \theta`.
+On the flank of a disc of z teeth θ = t − (a/z) sin(z t), so that stations are closer in the roots, by 1 − a: Kepler's equation
+for the anomalies E = z t and M = z θ (docs/theory/coefficients.md).
 """
 
 from __future__ import annotations
@@ -26,17 +21,13 @@ HALLEY_STEPS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Boundary:
-    """Stations of one closed boundary, uniform in a parameter of period 2π, rad.
+    """Stations of one closed boundary, the first at the parameter `offset`, rad; clustered by a and z of Kepler's equation."""
 
-    It has `count` stations from the number `first` of the matrix on, the first of them at the parameter `offset`, rad;
-    `clustering` is a of the equation above, 0 for stations uniform in the parameter itself, and `teeth` is z.
-    """
-
-    first: int
+    first: int  # number of its first station in the matrix
     count: int
     offset: float = 0.0
-    clustering: float = 0.0
-    teeth: int = 1
+    clustering: float = 0.0  # a, 0 for stations uniform in the parameter itself
+    teeth: int = 1  # z
 
     def weights(self, parameter: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
         """Return stations and weights of local Lagrange interpolation at parameters, shapes (…, 6)."""
@@ -47,10 +38,7 @@ class Boundary:
         return uniform_parameter(parameter - self.offset, self.teeth, self.clustering)
 
     def refined(self, values: FloatArray, times: int) -> FloatArray:
-        """Return values at `times` as many places (`parameters`), by Fourier series, shape (…, times · count).
-
-        `values` are those at the stations of all boundaries, shape (…, all stations); every `times`-th place is a station.
-        """
+        """Refine values at all stations to `times` · count places of this boundary (`parameters`) by Fourier series."""
         spectrum = np.fft.rfft(values[..., self.first : self.first + self.count], axis=-1)
         if self.count % 2 == 0 and times > 1:
             # With an even number of stations the highest order contains both signs.
@@ -71,8 +59,6 @@ def clustered_parameter(uniform: FloatArray, teeth: int, clustering: float) -> F
 def uniform_parameter(parameter: FloatArray, teeth: int, clustering: float) -> FloatArray:
     """Return t of parameters θ, the inverse of `clustered_parameter`, rad.
 
-    Examples
-    --------
     >>> theta = clustered_parameter(np.array([0.1, 3.0]), 13, 0.6)
     >>> uniform_parameter(theta, 13, 0.6)
     array([0.1, 3. ])
@@ -93,10 +79,7 @@ def uniform_parameter(parameter: FloatArray, teeth: int, clustering: float) -> F
 def weights_of(
     boundaries: Sequence[Boundary], number: NDArray[np.integer], parameter: FloatArray
 ) -> tuple[NDArray[np.intp], FloatArray]:
-    """Return stations and weights of places on several boundaries, shapes (…, places, 6).
-
-    `number` has the number of the boundary of each place, `parameter` the parameters, rad, both of the shape (…, places).
-    """
+    """Return stations and weights at parameters, rad, on boundaries of these numbers, shapes (…, places, 6)."""
     first, count, offset = (
         np.array([getattr(own, name) for own in boundaries])[number] for name in ("first", "count", "offset")
     )
@@ -134,15 +117,7 @@ def _lagrange(
 
 
 def boundaries_of(numbers: NDArray[np.integer], teeth: int = 1, clustering: float = 0.0) -> tuple[Boundary, ...]:
-    """Return the boundaries of stations from the number of the boundary of each station, from 0 and ascending.
-
-    Those of the first boundary, the flank, cluster about the roots of its teeth.
-
-    Examples
-    --------
-    >>> [(own.first, own.count) for own in boundaries_of(np.array([0, 0, 0, 1, 1]))]
-    [(0, 3), (3, 2)]
-    """
+    """Return the boundaries by the ascending boundary number of each station; the first, the flank, clusters in its roots."""
     counts = np.bincount(numbers)
     firsts = (np.cumsum(counts) - counts).tolist()
     flank, *walls = (Boundary(first=first, count=count) for first, count in zip(firsts, counts.tolist(), strict=True))
@@ -152,11 +127,7 @@ def boundaries_of(numbers: NDArray[np.integer], teeth: int = 1, clustering: floa
 def turned_boundaries(
     boundaries: tuple[Boundary, ...], *, bores: int, steps: int, pattern: int, flank_turn: float
 ) -> tuple[Boundary, ...]:
-    """Return flank, bores and holes of a part that stands turned in its disc, in the order of the disc.
-
-    The part is turned by `steps` of ``2π/pattern``, of which bores and holes are whole numbers apart; `bores` is the number of
-    bores among `boundaries`, and `flank_turn` the parameter of the disc's flank at which that of the part begins, rad.
-    """
+    """Return flank, bores and holes, in the order of the disc, of a part that stands turned by `steps` of 2π/`pattern` in it."""
     flank, *walls = boundaries
     found = [replace(flank, offset=flank.offset + flank_turn)]
     for circle in (walls[:bores], walls[bores:]):

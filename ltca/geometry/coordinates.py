@@ -1,14 +1,8 @@
-"""The coordinates of a pose and their places: discs, cranks that yield, the wheel if its bearing yields, the angle of the wheel.
+"""The coordinates of a pose at a held crank angle and their places, in mm and rad (docs/theory/balance.md).
 
-A pose of one disc at a held crank angle is q = (x, y, disc rotation, …, wheel angle): x and y in mm are the displacement of
-the disc from its nominal place in the fixed frame, the angles in rad; the wheel angle is its deviation from φ_C/u. Between
-them stand x and y of each crank in the plane of the disc, if cranks yield, and the angle by which each eccentric is ahead of
-the crank, if they twist; if contacts have slices, the leans of these cranks and of the disc; x and y of the wheel, if its bearing
-yields, and its lean, if it yields in tilt; and x, y and rotation of the ring that ties the tips of the shaft pins, or of the far
-flange of the carrier, if there is one. The poses of several discs follow each other, with one wheel.
-
-A lean is what x and y of a part change by along its axis, dx/dz and dy/dz about the middle of the disc: with the rotation
-vector ω of a small tilt it is (ω_y, −ω_x). As an arrow of the plane it turns as displacements do.
+q = (x, y, rotation of the disc; x, y of each crank; twist of each; lean of each and of the disc; x, y and lean of the wheel; x,
+y, rotation of ring or far flange; wheel angle, its deviation from φ_C/u) as far as they yield; several discs follow each other,
+with one wheel. A lean is dx/dz + i dy/dz about the middle of the disc: with the rotation vector ω it is (ω_y, −ω_x).
 """
 
 from __future__ import annotations
@@ -37,26 +31,14 @@ def disc_displacement(pose: FloatArray) -> ComplexArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coordinates:
-    """Members whose displacements make up a pose: the number of discs, and what yields beside them.
-
-    Attributes
-    ----------
-    discs, cranks : int
-        Number of discs, and of cranks that yield; none where these are rigid.
-    wheel, wheel_leans : bool
-        Whether the wheel's bearing yields, and whether it leans as well.
-    ring : bool
-        Whether a ring ties the tips of the shaft pins and floats, or is the far flange of a carrier on posts.
-    twists, leans : bool
-        Whether cranks yield in torsion, and whether discs lean, and cranks that yield in their planes.
-    """
+    """Members whose displacements make up a pose: the number of discs, and the parts that yield beside them."""
 
     discs: int = 1
-    cranks: int = 0
-    wheel: bool = False
-    ring: bool = False
-    twists: bool = False
-    leans: bool = False
+    cranks: int = 0  # that yield; 0 where they are rigid
+    wheel: bool = False  # whether its bearing yields
+    ring: bool = False  # whether one ties the tips of shaft pins and floats, or is the far flange of a carrier
+    twists: bool = False  # whether cranks yield in torsion
+    leans: bool = False  # whether discs lean, and cranks that yield in their planes
     wheel_leans: bool = False
 
     @classmethod
@@ -76,9 +58,7 @@ class Coordinates:
 
     @property
     def own(self) -> int:
-        """Number of coordinates of each disc: x, y, rotation, x and y of every crank there, the twist of every crank, the
-        lean of every crank and its own.
-        """
+        """Number of coordinates of each disc, with those of the cranks at it."""
         return DISC_ROTATION + 1 + (2 + self.twists + 2 * self.leans) * self.cranks + 2 * self.leans
 
     @property
@@ -94,8 +74,6 @@ class Coordinates:
     def columns(self, disc: int) -> Columns:
         """Return the places of the coordinates of a disc followed by those of wheel and ring.
 
-        Examples
-        --------
         >>> Coordinates(discs=2).columns(1).tolist(), Coordinates(cranks=1, wheel=True).columns(0).tolist()
         ([3, 4, 5, 6], [0, 1, 2, 3, 4, 5, 6, 7])
         """
@@ -117,9 +95,7 @@ class Coordinates:
         return self.own - 2 * (1 + self.cranks - crank)
 
     def journals(self, crank: int) -> Columns:
-        """Return the places of x of a crank at every disc, followed by those of its lean there if discs lean; each has its y
-        behind it.
-        """
+        """Return the places of x, which y follows, of a crank at every disc, then of its leans there if discs lean."""
         places = [self.crank(crank), self.crank_lean(crank)] if self.leans else [self.crank(crank)]
         return (np.array(places)[:, None] + self.own * np.arange(self.discs)).ravel()
 
@@ -147,13 +123,7 @@ class Coordinates:
 
     @property
     def rotations(self) -> Columns:
-        """Places of the angles.
-
-        Examples
-        --------
-        >>> Coordinates(discs=2, cranks=1).rotations.tolist()
-        [2, 7, 10]
-        """
+        """Places of the angles."""
         shared = [self.size - 2, self.size - 1] if self.ring else [self.size - 1]
         return np.append(DISC_ROTATION + self.own * np.arange(self.discs), shared)
 

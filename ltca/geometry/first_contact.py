@@ -1,8 +1,6 @@
 """Tooth contact analysis without load: first contact, backlash, interference.
 
-The disc is held on the nominal eccentricity without rotation, as bearing and pin holes without clearance hold it, and with
-contacts in slices square to its crank; what is left is the backlash between flank and pins, which touch where along their
-width they first do.
+The disc is held on the nominal eccentricity without rotation, in slices square to its crank.
 """
 
 from __future__ import annotations
@@ -32,14 +30,7 @@ MAX_ITERATIONS = 60
 def first_contact(
     geometry: ContactGeometry, crank_angle: FloatArray, coordinate: int, sense: int
 ) -> tuple[FloatArray, NDArray[np.intp]]:
-    """Return the rotation of disc or wheel about the nominal pose at which the first pin touches, rad, and that pin.
-
-    `crank_angle` is φ_C, rad, of the shape (positions,) of both answers; `coordinate` is what turns, the disc about its centre
-    (2) or the wheel (−1), and `sense` +1 counter-clockwise, −1 clockwise. ConvergenceError when no pin can touch in that sense.
-
-    Where pins press on the flank at every rotation, because of errors of single parts or an interference fit, the result is the
-    rotation of least `interference` in both senses, so that backlash is zero.
-    """
+    """Return the rotation of disc (2) or wheel (−1) at which the first pin touches, rad, and that pin, both (positions,)."""
     rotation, pin, settled = turn_to_contact(geometry, crank_angle, coordinate, sense)
     if not np.all(settled):
         raise ConvergenceError("no pin touches the flank within half a pitch, the disc in its nominal place")
@@ -58,10 +49,7 @@ def turn_to_contact(
 
 
 def interference(geometry: ContactGeometry, crank_angle: FloatArray) -> FloatArray:
-    """Return the overlap of pins and flank where turning the wheel makes it least, the disc in its nominal place, mm.
-
-    Of the shape of the crank angles, (positions,); zero where there is backlash.
-    """
+    """Return the overlap of pins and flank where turning the wheel makes it least, mm, shape (positions,); zero with backlash."""
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     _, pressed = _least_interference(geometry, angle, WHEEL_ANGLE)
     return np.where(pressed > TOUCHING * _size(geometry), pressed, 0.0)
@@ -98,12 +86,7 @@ def _approaches(
 
 
 def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate: int) -> tuple[FloatArray, FloatArray]:
-    """Return the rotation at which the largest approach is no interference, or the least one, and that approach.
-
-    The largest approach over the rotation is a valley: its slope tells on which side the bottom lies. At the bottom two pins,
-    one from each side, have the same approach. With unmodified flanks all pins touch there; with equal offsets it is just below
-    zero. The derivative jumps at the bottom, which a library's minimiser finds to the root of round-off only.
-    """
+    """Return the rotation at which the largest approach is no interference, or the least one, and that approach."""
     quarter, touching = _quarter_pitch(geometry), TOUCHING * _size(geometry)
     rows, bottom = np.arange(angle.size), np.zeros(angle.size)
     low, high = np.full(angle.size, -quarter), np.full(angle.size, quarter)
@@ -127,11 +110,7 @@ def _least_interference(geometry: ContactGeometry, angle: FloatArray, coordinate
 def _farthest_free(
     geometry: ContactGeometry, angle: FloatArray, coordinate: int, sense: int, start: FloatArray
 ) -> tuple[FloatArray, NDArray[np.intp], BoolArray]:
-    """Return the rotation from a start at which a pin presses, that pin, and whether one does.
-
-    Newton's method between a rotation where a pin presses and one where none does, with bisection where it leaves them. Where
-    all pins touch at the start the function is zero there, too: a root finder would stay.
-    """
+    """Return the rotation from a start at which a pin presses, that pin, and whether one does, by bracketed Newton's method."""
     approach, slope = _approaches(geometry, angle, coordinate, start)
     # Where all touch at the start, round-off of their approaches must not count.
     level = np.maximum(approach.max(axis=1), 0.0)
@@ -162,10 +141,7 @@ def _farthest_free(
 def backlash(
     geometry: ContactGeometry | Sequence[ContactGeometry], crank_angle: FloatArray, coordinate: int
 ) -> FloatArray:
-    """Return the backlash of disc (2) or wheel (−1): rotation between first contact in both senses, rad, shape (positions,).
-
-    With several discs on one wheel `geometry` has each of them, and the wheel turns until the first of them touches.
-    """
+    """Return the backlash of disc (2) or wheel (−1), rotation between first contacts of any disc both ways, rad, (positions,)."""
     discs = [geometry] if isinstance(geometry, ContactGeometry) else geometry
     forward = np.min([first_contact(disc, crank_angle, coordinate, 1)[0] for disc in discs], axis=0)
     backward = np.max([first_contact(disc, crank_angle, coordinate, -1)[0] for disc in discs], axis=0)

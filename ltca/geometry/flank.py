@@ -1,16 +1,7 @@
-r"""Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1).
+"""Cycloid flank with equidistant and shifting offset, its normals, curvature and nearest point (Eq. 1), in the frame of the disc.
 
-Points of the plane are complex numbers in the frame of the disc. The flank is the inward parallel curve,
-at the distance :math:`r_P + \Delta r_P`, of the trochoid that a pin centre describes about the disc,
-
-.. math:: c(\theta) = (R_C + \Delta R_C) e^{i\theta} - e\, e^{i u \theta},
-
-so flank and trochoid share their normals, and the distance of a pin from the flank is the distance of its
-centre from the trochoid. A root of the flank lies at θ = 0.
-
-An actual flank deviates from it by δ(θ) along that normal and its centre by the runout from the bore. With a
-deviation the flank F = c − (offset − δ) n is no parallel curve of a trochoid: normals, curvature and nearest points are then
-those of F.
+As designed it is parallel to the trochoid of a pin centre, so both share normals and nearest points; a root lies at θ = 0. With a
+deviation δ(θ) it is F = c − (offset − δ) n, no parallel curve, and normals and nearest points are those of F.
 """
 
 from __future__ import annotations
@@ -32,8 +23,7 @@ SETTLED = 1e-8
 MAX_ITERATIONS = 100
 """Newton steps to a contact point."""
 NEARLY = 1e-7
-"""Last step, rad, over which the curve is followed by its derivatives: what they leave out is 1e-11 of the least radius, and what
-Newton's method leaves of θ is of the square of the step."""
+"""Last step, rad, over which the curve is followed by its derivatives: what they leave out is 1e-11 of the least radius."""
 BRACKETED = 6
 """Steps after which the points that are left are bracketed."""
 ROUND_OFF = 1e-13
@@ -65,13 +55,8 @@ LEAST_SQUARE = 1e-9
 def trochoid_curvature(
     radius: FloatArray | float, eccentricity: FloatArray | float, pins: FloatArray | float, cosine: FloatArray | float
 ) -> FloatArray:
-    """Return the curvature of the path of the pin centres over the disc, 1/mm, positive where the disc is convex.
+    """Return the curvature of the path of the pin centres, 1/mm, positive where convex, by the cosine of pin and eccentric.
 
-    It is (1 + z K² − K (1 + z) c)/(R S³) with K = e z/R and S² = 1 + K² − 2 K c, where R is the generating circle of the z pins
-    and e the eccentricity, mm, and c the cosine of the angle of a pin from the direction of the eccentric.
-
-    Examples
-    --------
     >>> float(trochoid_curvature(60.0, 0.0, 40, 0.3))  # a circle
     0.016666666666666666
     """
@@ -100,29 +85,14 @@ class NearestPoint(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankProfile:
-    """Flank of the disc, or flanks of a batch of discs.
+    """Flank of the disc, or flanks of a batch of discs, whose numbers are arrays of shape (positions, 1)."""
 
-    Numbers of a batch are arrays of shape (positions, 1): axis 0 of every parameter is then the position.
-
-    Attributes
-    ----------
-    generating_radius, eccentricity, offset : float
-        R_C + ΔR_C, e of the generating motion and r_P + Δr_P, the distance of the flank from the trochoid, mm.
-    reduction_ratio : float
-        u = z_P/Δz, the frequency of the trochoid, a whole number.
-    turn, centre : complex
-        Unit vector of the root at θ = 0 in the frame of the disc, by which the flank is turned against bore and holes, and centre
-        of the flank in that frame, whose origin is the centre of the bore, mm.
-    deviation : ProfileDeviation or None
-        Departure from the design along its normal.
-    """
-
-    generating_radius: BatchScalar = by_drive(0)
+    generating_radius: BatchScalar = by_drive(0)  # R_C + ΔR_C, mm
     eccentricity: BatchScalar = by_drive(0)
-    reduction_ratio: float
-    offset: BatchScalar = by_drive(0)
-    turn: complex | ComplexArray = by_drive(0, default=1.0)
-    centre: complex | ComplexArray = by_drive(0, default=0.0)
+    reduction_ratio: float  # u = z_P/Δz, a whole number
+    offset: BatchScalar = by_drive(0)  # r_P + Δr_P, distance of the flank from the trochoid, mm
+    turn: complex | ComplexArray = by_drive(0, default=1.0)  # unit vector of the root at θ = 0 in the frame of the disc
+    centre: complex | ComplexArray = by_drive(0, default=0.0)  # of the flank from that of the bore, mm
     deviation: ProfileDeviation | None = None
 
     @classmethod
@@ -144,7 +114,7 @@ class FlankProfile:
         return self.at(unit(parameter))
 
     def at(self, direction: ComplexArray) -> CurvePoints:
-        """Return the design trochoid as `locus` does, at e^{iθ}."""
+        """Return the design trochoid, (R_C + ΔR_C) e^{iθ} − e e^{iuθ} turned with the flank, as `locus` does, at e^{iθ}."""
         u = self.reduction_ratio
         circle = self.generating_radius * direction
         crank = self.eccentricity * integer_power(direction, round(u))
@@ -158,10 +128,7 @@ class FlankProfile:
         return self.offset if self.deviation is None else 0.0
 
     def contact_curve(self, direction: ComplexArray) -> CurvePoints:
-        """Return a curve, at e^{iθ}, whose inward parallel at `contact_offset` is the actual flank: nearest points are common.
-
-        It is the trochoid; with a deviation the flank itself.
-        """
+        """Return the curve at e^{iθ} whose inward parallel at `contact_offset` is the flank: trochoid, or the flank itself."""
         if self.deviation is None:
             c, dc, ddc = self.at(direction)
             return CurvePoints(c + self.centre, dc, ddc)
@@ -215,10 +182,7 @@ class FlankProfile:
         return np.asarray(curve.tangent * (1.0 - self.contact_offset * curve.curvature))
 
     def curvature(self, parameter: FloatArray) -> FloatArray:
-        """Return the curvature of the flank at θ, 1/mm, positive where the disc is convex.
-
-        Parallel curves share centres of curvature: ρ_flank = ρ_trochoid − offset.
-        """
+        """Return the curvature of the flank at θ, 1/mm, positive where convex; as designed ρ_flank = ρ_trochoid − offset."""
         curvature = self.contact_curve(unit(parameter)).curvature
         return np.asarray(curvature / (1.0 - self.contact_offset * curvature))
 
@@ -227,25 +191,12 @@ class FlankProfile:
         return 1.0 / (1.0 / np.asarray(pin_radius) + self.curvature(parameter))
 
     def nearest_point(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
-        """Find the flank point whose normal passes through a point (Eq. 61).
-
-        Newton's method on g = Re(conj(c′)(c − p)) = 0 with the step bounded to a fifth of a tooth and, when it does not
-        converge soon, bracketed between a place with g < 0 and one with g > 0: near a centre of curvature the slope of g
-        vanishes and Newton's method alone is slow or diverges. It finds the minimum next to the start; for points
-        about a pin radius away from the flank that is the nearest one.
-
-        Points are those of the disc frame, mm; `start` is a first guess of θ, rad, near which the answer is: it is not reduced to
-        one turn. ConvergenceError when a point does not settle; the history holds the largest steps.
-        """
+        """Find the flank point next to θ = `start` whose normal passes through each point (Eq. 61): bracketed Newton's method."""
         theta = start if start.shape == point.shape else np.broadcast_to(start, point.shape)
         return self._nearer_side(point, self._settle(point, theta))
 
     def _settle(self, point: ComplexArray, start: FloatArray) -> NearestPoint:
-        """Find the foot next to every start; points that have converged are dropped as soon as they are the majority.
-
-        A loop of its own rather than a library's: it runs in every iteration of an equilibrium, with Halley's correction from
-        the slopes of two steps, and the curve at the foot comes out of it.
-        """
+        """Find the foot next to every start, g = Re(conj(c′)(c − p)) = 0, in a loop of its own: every equilibrium runs it."""
         flank, theta, direction = self, start, unit(start)
         every, settled, left = theta, direction, np.arange(theta.size)
         bound = 0.4 * np.pi / self.reduction_ratio
@@ -311,11 +262,7 @@ class FlankProfile:
         )
 
     def _nearer_side(self, point: ComplexArray, found: NearestPoint) -> NearestPoint:
-        """Return the nearest points from those on one side of the root, on the other where the flank is nearer there.
-
-        With e z_P/R_C near 1 the path of a pin centre is nearly a cusp at the root, and a pin farther from it than its radius
-        of curvature there has a nearest point on either side.
-        """
+        """Replace nearest points by those beyond a root, nearly a cusp where e z_P/R_C is near 1, where these are nearer."""
         u = self.reduction_ratio
         bend = self.eccentricity * u * u - self.generating_radius
         if isinstance(bend, np.ndarray):

@@ -1,8 +1,4 @@
-r"""Deviation of the flank from its design along the design normal, δ(θ), with two derivatives.
-
-It is the sum of harmonics, :math:`\delta = \mathrm{Re} \sum_k (a_k - i b_k) e^{ik\theta}`, and of a periodic cubic spline
-through measured points (twice continuously differentiable, so contact and its tangent are continuous).
-"""
+"""Deviation of the flank along its design normal, δ(θ) = Re Σ (a_k − i b_k) e^{ikθ} + a spline, with two derivatives."""
 
 from __future__ import annotations
 
@@ -18,21 +14,12 @@ from ltca.geometry.rotation import integer_power
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileDeviation:
-    """Deviation of one flank, or of the flanks of a batch.
+    """Deviation of one flank, or of the flanks of a batch: harmonics and a periodic cubic spline through measured points."""
 
-    Attributes
-    ----------
-    orders, amplitudes : tuple of int, array of complex, shape (orders,) or (positions, orders)
-        Waves around the disc, and a − i b of each, mm.
-    knots, pieces : array, shape (n + 1,) and (4, n)
-        Measured parameters and the first one a turn later, rad, and powers 3 … 0 of the distance from the knot before, mm; empty
-        without points.
-    """
-
-    orders: tuple[int, ...]
-    amplitudes: ComplexArray = by_drive(1)
-    knots: FloatArray
-    pieces: FloatArray
+    orders: tuple[int, ...]  # waves around the disc
+    amplitudes: ComplexArray = by_drive(1)  # a − i b of each order, mm, shape (orders,) or (positions, orders)
+    knots: FloatArray  # measured parameters and the first one a turn later, rad; empty without points
+    pieces: FloatArray  # powers 3 … 0 of the distance from the knot before, mm, shape (4, n)
 
     @classmethod
     def of_errors(cls, errors: ProfileErrors) -> ProfileDeviation | None:
@@ -52,10 +39,7 @@ class ProfileDeviation:
         )
 
     def value_and_derivatives(self, direction: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return δ, δ′ and δ″ at e^{iθ}, mm by powers of rad, shape (…) or (positions, …).
-
-        With a batch of flanks axis 0 is the position.
-        """
+        """Return δ, δ′ and δ″ at e^{iθ}, mm by powers of rad, shape (…); of a batch of flanks axis 0 is the position."""
         value, first, second = (np.zeros(direction.shape) for _ in range(3))
         for number, order in enumerate(self.orders):
             amplitude = self.amplitudes[..., number]

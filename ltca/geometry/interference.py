@@ -19,23 +19,16 @@ HOLES = "shaft pins and holes"
 
 
 class Interference(NamedTuple):
-    """Overlaps of the drawn parts with the disc in its nominal place, mm; negative where there is play.
+    """Overlaps of the drawn parts with the disc in its nominal place, mm, clearances included; negative where there is play."""
 
-    Those of wheel pins and flank are the largest over the mesh, the wheel at its ideal angle; of a roller and both races
-    together, clearance included; of shaft pins and holes, clearance included, all on the same side, against the eccentricity,
-    −∞ without them.
-    """
-
-    pins: float
-    rollers: float
-    holes: float
+    pins: float  # largest of wheel pins and flank over the mesh, the wheel at its ideal angle
+    rollers: float  # of a roller and both races together
+    holes: float  # of shaft pins on one side against the eccentricity; −∞ without them
 
 
 def drawn_interference(drive: Drive) -> Interference:
     """Return the overlaps of the parts of a drive whose flank has no loops, errors of single parts left out.
 
-    Examples
-    --------
     >>> from ltca.reading.drive_file import load_drive
     >>> found = drawn_interference(load_drive("paper").cases["CS-3"])
     >>> print(f"{found.pins:.3f} {found.rollers:.3f} {found.holes:.3f}")
@@ -56,10 +49,7 @@ def drawn_interference(drive: Drive) -> Interference:
 
 
 def lost_play(cold: Drive, warm: Drive) -> list[str]:
-    """Return the plays of a drive that are lost at temperature and by how much parts then overlap; empty where none is lost.
-
-    `cold` is the drive at 20 °C, `warm` at temperature (`ltca.drive.members.temperatures.warm_drive`).
-    """
+    """Return messages about the plays of a drive at 20 °C that are lost in the `warm` one."""
     before, after = drawn_plays(cold), drawn_plays(warm)
     return [
         f"the play of {what} ({before[what]:.4g} mm at 20 °C) is gone: they overlap by {-after[what]:.4g} mm"
@@ -69,11 +59,7 @@ def lost_play(cold: Drive, warm: Drive) -> list[str]:
 
 
 def drawn_plays(drive: Drive) -> dict[str, float]:
-    """Return the least play of any disc by the parts that touch, discs in the middle of their eccentrics, mm.
-
-    It is negative where parts overlap as drawn by more than the rounding of sums. The distance between the circles of holes and
-    shaft pins, and between those of bores and several cranks, is the mean one.
-    """
+    """Return the least play of any disc by the parts that touch, mm, negative for overlap, discs in mid-eccentric."""
     overlaps = {FLANK: -inf, ROLLERS: -inf, HOLES: -inf}
     for single in single_discs(drive):
         pins, rollers, holes = drawn_interference(single)
@@ -92,11 +78,7 @@ def _mean_shift(errors: BoreErrors | PlacementErrors | None) -> float:
 
 
 def overlap_at_rest(drive: Drive, flank: float) -> tuple[float, str]:
-    """Return the largest overlap of any pair of parts without load, mm, and the names of the two parts, empty where none overlap.
-
-    `drive` is at its temperatures; `flank` is the overlap of wheel pins and flank with the errors of single parts, mm. Pins in
-    slots and sleeves on pins are no pairs of their own: a drive whose pins have no play there is refused, cold or warm.
-    """
+    """Return the largest overlap of any pair of parts without load, mm, and the names of the parts, given that of the `flank`."""
     overlaps = {what: -play for what, play in drawn_plays(drive).items() if what != FLANK} | {FLANK: flank}
     what = max(overlaps, key=lambda one: overlaps[one])
     return (overlaps[what], what) if overlaps[what] > 0.0 else (0.0, "")

@@ -11,8 +11,7 @@ from ltca.arrays import FloatArray
 from ltca.drive.parts import Disc, LengthProfile
 
 ACROSS = np.linspace(-1.0, 1.0, 257)
-"""Places along a contact, by half its length, at which bodies that do not yield are looked at for where they touch: what a crown
-falls short by is missed by no more than 2e-5 of its drop."""
+"""Places along a contact, by half its length, at which rigid bodies may touch: they miss 2e-5 of the drop of a crown."""
 LOGARITHMIC = 0.00035
 """Amplitude of the logarithmic profile by the diameter of the roller (ISO 16281:2025, rollers no longer than 2.5 diameters)."""
 
@@ -22,25 +21,13 @@ class Relief:
     """Profile by which a body falls short of the cylinder: crown, logarithmic relief and a parabolic drop at each end, summed.
 
     It is z = y²/(2 R) + A ln(1/(1 − (2y/L)²)) + d ((|y| − y0)/l)² beyond y0 = L/2 − l, at the distance y from mid-width, mm.
-    Terms that are left out are zero. Tables are cached by it.
-
-    Parameters
-    ----------
-    length : float
-        Length L of the contact line, mm.
-    crown_radius : float
-        R, mm.
-    logarithm : float
-        A, mm.
-    end_length, end_depth : float
-        Length l of the relieved part at each end, at most half the length, and the drop d at the very end, mm.
     """
 
-    length: float
-    crown_radius: float = np.inf
-    logarithm: float = 0.0
-    end_length: float = 0.0
-    end_depth: float = 0.0
+    length: float  # L of the contact line
+    crown_radius: float = np.inf  # R
+    logarithm: float = 0.0  # A
+    end_length: float = 0.0  # l of the relieved part at each end, at most half the length
+    end_depth: float = 0.0  # d, the drop at the very end
 
     def relief(self, y: ArrayLike) -> FloatArray:
         """z(y), mm; a logarithmic one is infinite at and beyond the ends."""

@@ -1,8 +1,4 @@
-"""Approaches of pairs at a pose, and their derivatives by the pose.
-
-All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
-together.
-"""
+"""Approaches of pairs at a pose, positive where pressed, and their derivatives by the pose; arrays (positions, pairs, …)."""
 
 from __future__ import annotations
 
@@ -30,41 +26,21 @@ def cross(first: ComplexArray, second: ComplexArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PairMotion:
-    """Approach δ of pairs of one kind, mm, with first and second derivatives by the pose.
+    """Approach δ of pairs of one kind, mm, with first and second derivatives by the pose, which have few terms (`bend`)."""
 
-    The second derivatives of a pair have few terms: κ s sᵀ with s = `along`, the slip of the contact along its tangent, and
-    terms of rotation made of s as well. They are only formed summed over the pairs, see `bend`.
-
-    Attributes
-    ----------
-    approach : array, shape (positions, pairs)
-        δ, mm.
-    gradient, along : array, shape (positions, pairs, coordinates)
-        ∂δ/∂q and s, in mm/mm and mm/rad.
-    bending : array, shape (positions, pairs)
-        κ of the path of equal approach, 1/mm.
-    """
-
-    approach: FloatArray
-    gradient: FloatArray
-    along: FloatArray
-    bending: FloatArray
+    approach: FloatArray  # δ, mm, shape (positions, pairs)
+    gradient: FloatArray  # ∂δ/∂q, mm/mm and mm/rad, shape (positions, pairs, coordinates)
+    along: FloatArray  # s, the slip of the contact along its tangent, alike
+    bending: FloatArray  # κ of the path of equal approach, 1/mm
 
     def bend(self, load: FloatArray) -> FloatArray:
-        """Return Σ F ∂²δ/∂q² over the pairs, the geometric part of the tangent, shape (positions, coordinates, coordinates).
-
-        Loads F are in N, shape (positions, pairs). Pins in holes have κ s sᵀ + s₂ e₂e₂ᵀ, the disc rotation being coordinate 2.
-        """
+        """Return Σ F ∂²δ/∂q² of loads F, N, shape (positions, coordinates, coordinates); holes have κ s sᵀ + s₂ e₂e₂ᵀ."""
         total = np.matmul(self.along.swapaxes(-1, -2), (load * self.bending)[..., None] * self.along)
         total[..., DISC_ROTATION, DISC_ROTATION] += (load * self.along[..., DISC_ROTATION]).sum(axis=-1)
         return np.asarray(total)
 
     def leaning(self, lean: ComplexArray, turns: Turns, coordinates: Coordinates) -> PairTilt:
-        """Return the tilt of the pairs from the lean of the disc at each less that of the other part, rad.
-
-        `coordinates` are those of the pose; `turns` has how leans that stand on a body turn with it, by the place of its angle in
-        the pose. Arrays have the shape (positions, pairs).
-        """
+        """Return the tilt of pairs from the lean of the disc at each less that of the other part, rad, (positions, pairs)."""
         normal = self.gradient[..., 0] + 1j * self.gradient[..., 1]
         across = dot(self.along[..., 0] + 1j * self.along[..., 1], lean)
         gradient = self._bent_by(across)
@@ -79,10 +55,7 @@ class PairMotion:
         return (across * self.bending)[..., None] * self.along
 
     def bend_leans(self, moment: FloatArray, turns: Turns, coordinates: Coordinates) -> FloatArray:
-        """Return Σ M ∂²θ/∂q² over the pairs, but for third derivatives of the approach, which are of the order of the lean.
-
-        Moments M are in N·mm, shape (positions, pairs); the answer has the shape (positions, coordinates, coordinates).
-        """
+        """Return Σ M ∂²θ/∂q² of moments M, N·mm, without third derivatives of δ, which are of the order of the lean."""
         total = np.zeros((moment.shape[0], coordinates.size, coordinates.size))
         for place in (0, 1):
             row = (moment[..., None] * self._bent_by(self.along[..., place])).sum(axis=1)
@@ -112,30 +85,23 @@ class PairTilt:
     def at(
         self, gap: FloatArray, slope: FloatArray, height: FloatArray, drop: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
-        """Return gaps at heights above the middle where bodies fall short by `drop`, mm, and their derivatives by the pose.
-
-        `gap` and `slope` are those of the middles, shapes (positions, pairs) and (positions, pairs, coordinates).
-        """
+        """Return gaps at heights where bodies fall short by `drop`, mm, and their derivatives, from those of the middles."""
         return gap - self.tilt * height + drop, slope - self.gradient * height[..., None]
 
     def deepest(self, height: FloatArray, drop: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the one of some heights, (positions, heights), at which each pair is pressed furthest, and the drop there."""
+        """Return the height, of some of shape (positions, heights), at which each pair is pressed most, and the drop there."""
         first = np.argmax(self.tilt[..., None] * height[:, None] - drop[:, None], axis=-1)
         return np.take_along_axis(height, first, axis=1), np.take_along_axis(drop, first, axis=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FlankMotion(PairMotion):
-    """Pairs of wheel pin and flank, shape (positions, z_P).
+    """Pairs of wheel pin and flank, shape (positions, z_P)."""
 
-    Beside what all pairs have it holds the place θ of the contact on the flank, rad, ρ of pin and flank there, mm, the centre of
-    the pin in the frame of the disc, mm, and the change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm.
-    """
-
-    parameter: FloatArray
-    effective_radius: FloatArray
-    point: ComplexArray
-    turning: ComplexArray
+    parameter: FloatArray  # θ of the contact on the flank, rad
+    effective_radius: FloatArray  # ρ of pin and flank, mm
+    point: ComplexArray  # centre of the pin in the frame of the disc, mm
+    turning: ComplexArray  # change of θ as that centre moves, ∂θ/∂x + i ∂θ/∂y, rad/mm
 
     def _bent_by(self, across: FloatArray) -> FloatArray:
         """As for holes, of pins on the flank."""
@@ -150,10 +116,7 @@ class FlankMotion(PairMotion):
         return (of_disc, (coordinates.wheel_lean_place, -1.0)) if coordinates.wheel_leans else (of_disc,)
 
     def bend(self, load: FloatArray) -> FloatArray:
-        """Return the same of pins on the flank, the wheel angle being the last coordinate.
-
-        They have −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ).
-        """
+        """Return Σ F ∂²δ/∂q² of pins on the flank, −(κ s sᵀ + e₂ sᵀ + s e₂ᵀ − s₂ e₂e₂ᵀ − s_W e_W e_Wᵀ), W the wheel angle."""
         total = np.matmul(self.along.swapaxes(-1, -2), (load * self.bending)[..., None] * self.along)
         slip = np.matmul(load[..., None, :], self.along)[..., 0, :]
         total[..., DISC_ROTATION, :] += slip
@@ -173,28 +136,13 @@ class KnownPins:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoreMotion:
-    """Bores of the disc against the centres of the inner races in them, in the fixed frame, shape (positions, cranks).
+    """Bores of the disc against the centres of the inner races in them, in the fixed frame, shape (positions, cranks)."""
 
-    Attributes
-    ----------
-    displacement : array of complex
-        Bore centre from inner-race centre, mm.
-    arm : array of complex
-        Bore centre from the centre of the disc, mm: zero for a central crank. The second derivative of `displacement` by the
-        rotation of the disc is −`arm`.
-    gradient : array of complex, shape (positions, cranks, coordinates)
-        ∂ displacement/∂q, in mm/mm and mm/rad.
-    lever : array of complex
-        Centre of the twisted inner race from the axis of its crank, mm: the second derivative by the twist. There is no other.
-    twists : tuple of int
-        Places of the twist of every crank in the pose; none where cranks do not twist.
-    """
-
-    displacement: ComplexArray
-    arm: ComplexArray
-    gradient: ComplexArray
-    lever: ComplexArray
-    twists: tuple[int, ...] = ()
+    displacement: ComplexArray  # bore centre from inner-race centre, mm
+    arm: ComplexArray  # bore centre from disc centre, mm: minus the second derivative of `displacement` by the rotation
+    gradient: ComplexArray  # ∂ displacement/∂q, mm/mm and mm/rad, shape (positions, cranks, coordinates)
+    lever: ComplexArray  # race centre from its twisted crank's axis, mm: the second derivative by the twist
+    twists: tuple[int, ...] = ()  # places of the twist of every crank in the pose
 
     def each(self, values: ComplexArray, rollers: int) -> ComplexArray:
         """Return values of the bores, shape (positions, cranks, …), as those of all their rollers, (positions, rollers, …)."""
@@ -203,27 +151,14 @@ class BoreMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollerRays:
-    """Rollers on their cage rays about the inner-race centres, crank after crank.
+    """Rollers on their cage rays about the inner-race centres, crank after crank."""
 
-    Attributes
-    ----------
-    direction : array of complex, shape (positions, rollers)
-        Unit vector n of each ray in the fixed frame.
-    outermost : array, shape (rollers,)
-        Distance s of the roller centre from the race centre when it rests on the inner race, mm.
-    bore_play : array, shape (rollers,)
-        Bore radius less roller radius: distance from the bore centre at which it touches the bore, mm.
-    """
-
-    direction: ComplexArray
-    outermost: FloatArray
-    bore_play: FloatArray
+    direction: ComplexArray  # unit vector n of each ray in the fixed frame, shape (positions, rollers)
+    outermost: FloatArray  # distance s from the race centre of a roller that rests on the race, mm
+    bore_play: FloatArray  # bore radius less roller radius, mm
 
     def touching(self, displaced: ComplexArray) -> FloatArray:
-        """Return the distance s at which each roller just touches the bore, mm, shape (positions, rollers).
-
-        `displaced` is the bore centre from the inner-race centre, along and across each ray, mm.
-        """
+        """Return the distance s at which each roller just touches a bore `displaced` along and across its ray, mm."""
         # A disc displaced sideways by more than the bore play does not meet the ray: the nearest point instead.
         return np.asarray(displaced.real + np.sqrt(np.maximum(self.bore_play**2 - displaced.imag**2, 0.0)))
 

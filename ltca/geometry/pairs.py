@@ -1,9 +1,4 @@
-"""Approach of each pair at a pose and its derivatives by the pose (Eq. 45–64).
-
-A pose q is that of `ltca.geometry.coordinates`; a pose of four coordinates leaves cranks and wheel in place.
-All arrays carry the position on axis 0 and the pair on axis 1. Approaches are positive where the bodies are pressed
-together.
-"""
+"""Approach of each pair at a pose and its derivatives by the pose (Eq. 45–64); conventions as in `ltca.geometry.pair_motion`."""
 
 from __future__ import annotations
 
@@ -46,10 +41,7 @@ _RIGID_MEMBERS = Coordinates()
 
 
 class DiscPlace(NamedTuple):
-    """Where a disc stands: inner races of its crank angles, its centre in the fixed frame, mm, and unit vector of its rotation.
-
-    Centre and rotation have the shape (positions, 1).
-    """
+    """Inner races of a disc, its centre in the fixed frame, mm, and unit vector of its rotation, shape (positions, 1)."""
 
     races: Races
     centre: ComplexArray
@@ -58,52 +50,23 @@ class DiscPlace(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactGeometry:
-    """Places of the contact pairs of a drive and their approaches at poses.
-
-    Crank angles φ_C are in rad, shape (positions,); poses q have the shape (positions, coordinates).
-
-    Attributes
-    ----------
-    placement, profile : Placement, FlankProfile
-        Places of the parts, and the flank.
-    coordinates : Coordinates
-        Of a pose in which every member moves that can.
-    plane, half_width : float
-        Axial place of the middle of the disc, where a wheel that leans displaces its pins, and half the thickness of the disc,
-        by which leans are measured, mm.
-    tip_share, tip_slope : float
-        Displacement of a shaft pin at the disc per displacement of its tip, where a ring ties the tips, and its lean by it, 1/mm,
-        where contacts have slices.
-    seat_share : float
-        Displacement of a crank's axis at the disc per displacement of its bearing in the far flange of the carrier, as long as
-        the crank stays straight; 0 where no flange moves.
-    wheel_gap : float
-        Distance by which the wheel is free in its main bearing, mm.
-    crank_gaps, crank_shares, crank_slopes : array, shape (2,)
-        Distance by which a crank is free in each of its two bearings, mm, and displacement, mm, and lean, 1/mm, of the crank in
-        the plane of the disc by one there.
-    flank_drop, roller_drop : array, shape (places,)
-        By how much wheel pin and flank, and roller and both races, fall short of straight ones, mm, at the places
-        `ltca.geometry.length_profile.ACROSS` of contacts in slices; no places without.
-    roller_half_length : float
-        Half the length of the rollers, mm.
-    """
+    """Places of the contact pairs of a drive and their approaches at crank angles φ_C, rad, (positions,), and poses q."""
 
     placement: Placement
     profile: FlankProfile
-    coordinates: Coordinates
-    plane: float | FloatArray = by_drive(0, default=0.0)
-    half_width: float | FloatArray = by_drive(0, default=1.0)
-    tip_share: float | FloatArray = by_drive(0, default=0.0)
-    tip_slope: float | FloatArray = by_drive(0, default=0.0)
-    seat_share: float | FloatArray = by_drive(0, default=0.0)
-    wheel_gap: float | FloatArray = by_drive(0, default=0.0)
-    crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
-    crank_shares: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
-    crank_slopes: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))
-    flank_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))
-    roller_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))
-    roller_half_length: float | FloatArray = by_drive(0, default=1.0)
+    coordinates: Coordinates  # of a pose in which every member moves that can
+    plane: float | FloatArray = by_drive(0, default=0.0)  # axial place of the middle of the disc, mm
+    half_width: float | FloatArray = by_drive(0, default=1.0)  # half the thickness of the disc, mm
+    tip_share: float | FloatArray = by_drive(0, default=0.0)  # displacement of a shaft pin at the disc by its tip's
+    tip_slope: float | FloatArray = by_drive(0, default=0.0)  # lean by the same in slices, 1/mm
+    seat_share: float | FloatArray = by_drive(0, default=0.0)  # of a straight crank by its far bearing's
+    wheel_gap: float | FloatArray = by_drive(0, default=0.0)  # free distance of the wheel in its main bearing, mm
+    crank_gaps: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))  # of a crank in each bearing, mm
+    crank_shares: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))  # its displacement by one there
+    crank_slopes: FloatArray = by_drive(1, default_factory=lambda: np.zeros(2))  # its lean by the same, 1/mm
+    flank_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))  # from straight at `ACROSS`, mm
+    roller_drop: FloatArray = by_drive(1, default_factory=lambda: np.zeros(0))  # of roller and both races
+    roller_half_length: float | FloatArray = by_drive(0, default=1.0)  # mm
 
     @classmethod
     def of_drive(cls, drive: Drive) -> ContactGeometry:
@@ -143,11 +106,7 @@ class ContactGeometry:
 
     @property
     def stands_askew(self) -> bool:
-        """Whether contacts in slices close elsewhere than in their middle: parts lean, or flanks slope along their width.
-
-        What falls short alike on both sides, a crown or a relief, leaves the middles the first to touch, and so does a disc that
-        leans between upright parts.
-        """
+        """Whether contacts in slices close elsewhere than in their middle: parts lean, or flanks slope along their width."""
         place = self.placement
         sloping = self.flank_drop != self.flank_drop[..., ::-1]
         leans = (place.wheel_pin_leans, place.hole_leans, place.shaft_pin_leans, place.wheel_lean, place.crank_lean)
@@ -192,12 +151,7 @@ class ContactGeometry:
         known: KnownPins | None = None,
         at: DiscPlace | None = None,
     ) -> FlankMotion:
-        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89) at crank angles φ_C and poses q.
-
-        `start` is a first guess of the contact parameters, the nominal ones by default; where the pins were `known` there, it is
-        followed from that place. `shifts` are displacements of the pins in the turning wheel, mm; both have the shape (positions,
-        z_P). `at` is where the disc stands, if that is known.
-        """
+        """Return the pairs of wheel pin and flank (Eq. 60–64, 85–87, 89) next to θ = `start`, followed from `known` pins."""
         place, coordinates, profile = self.placement, self.coordinates_of(pose), self.profile
         disc = at or self.disc_place(crank_angle, pose)
         centre, arm = self._pins(crank_angle, pose, shifts, disc)
@@ -313,10 +267,7 @@ class ContactGeometry:
     def flank_tilt(
         self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion, leans: ComplexArray | None = None
     ) -> PairTilt:
-        """Return the tilt of wheel pins and flank; arguments as for `flank`.
-
-        `leans` are those of the bent pins at the disc in the turning wheel, rad, shape (positions, z_P).
-        """
+        """Return the tilt of wheel pins and flank, with `leans` of the bent pins at the disc in the turning wheel, rad."""
         return flank.leaning(*self.flank_lean(crank_angle, pose, leans), self.coordinates_of(pose))
 
     def flank_lean(
@@ -348,10 +299,7 @@ class ContactGeometry:
         return lean, turns
 
     def roller_tilt(self, pose: FloatArray, bores: BoreMotion, rays: RollerRays) -> PairTilt:
-        """Return the tilt of race and bore, by which the sum of both approaches of a roller grows with its height.
-
-        A roller that rests on the race takes whatever lean presses it least.
-        """
+        """Return the tilt of race and bore, by which the sum of both approaches of a roller grows with its height."""
         coordinates, arm = self.coordinates_of(pose), rays.resting(bores)
         count, length = arm.shape[1], np.abs(arm)
         normal = (arm / length)[..., None]

@@ -1,9 +1,4 @@
-"""Places and radii of pins, rollers and holes, errors included.
-
-Each part is given in the frame of the body that carries it, as complex numbers in mm: wheel pins in the
-wheel frame, holes in the disc frame, shaft pins in the fixed frame, rollers by their cage angle. Numbering
-starts at 0 and runs counter-clockwise.
-"""
+"""Places and radii of pins, rollers and holes, errors included, as complex numbers in mm."""
 
 from __future__ import annotations
 
@@ -71,10 +66,7 @@ def _bore_centres(drive: Drive) -> ComplexArray:
 
 
 class Races(NamedTuple):
-    """Inner races at crank angles: their centres, and those of their cages, from the crank axes and from the origin, mm (Eq. 47).
-
-    Both have the shape (…, cranks), in the fixed frame.
-    """
+    """Inner races: centres from the crank axes and from the origin, mm, shape (…, cranks), in the fixed frame (Eq. 47)."""
 
     lever: ComplexArray
     centre: ComplexArray
@@ -92,42 +84,35 @@ class Races(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Placement:
-    """Places and radii of all pins, rollers and holes, of one drive or of a batch of drives, mm and rad.
+    """Places and radii of pins, rollers (crank after crank) and holes, counter-clockwise, of a drive or a batch, mm and rad.
 
-    Arrays have one entry for each wheel pin, shaft pin or hole, roller (crank after crank) or crank. What differs between the
-    drives of a batch has the position on axis 0, single numbers the shape (positions, 1).
-
-    Wheel pins, their leans and holes are in the frames of wheel and disc, all else in the fixed frame; the lean of the wheel's
-    axis is not part of that of its pins. Radii are those of sleeves where there are some, of holes with the pin-hole clearance,
-    and `bore_radius` is r_o with half the bearing clearance. Plays, in radius, are those of loose pins in their slots and of
-    sleeves on their pins: without friction the forces on a free pin are collinear, and seen from the flank a pin of radius r in a
-    slot of radius r_s is a fixed one of radius r − (r_s − r). Eccentricity and phase are the actual ones of each crank, the cage
-    speed is the cage angle by the crank angle, r_i/(r_i + r_o) with the nominal r_o.
+    Of a batch the position is on axis 0, single numbers have the shape (positions, 1). Wheel pins and their leans are in the
+    frame of the wheel, holes in that of the disc, all else in the fixed frame.
     """
 
     wheel_pin_centres: ComplexArray = by_drive(1)
-    wheel_pin_radii: FloatArray = by_drive(1)
-    wheel_pin_plays: FloatArray = by_drive(1)
+    wheel_pin_radii: FloatArray = by_drive(1)  # those of sleeves where there are some
+    wheel_pin_plays: FloatArray = by_drive(1)  # radial: the flank sees a loose pin as a fixed one of radius r − play
     hole_centres: ComplexArray = by_drive(1)
-    hole_radii: FloatArray = by_drive(1)
+    hole_radii: FloatArray = by_drive(1)  # with the pin-hole clearance
     shaft_pin_centres: ComplexArray = by_drive(1)
     shaft_pin_radii: FloatArray = by_drive(1)
     shaft_pin_plays: FloatArray = by_drive(1)
     roller_cage_angles: FloatArray = by_drive(1)
     roller_radii: FloatArray = by_drive(1)
     inner_race_radius: BatchScalar = by_drive(0)
-    bore_radius: BatchScalar = by_drive(0)
-    eccentricity: FloatArray = by_drive(1)
+    bore_radius: BatchScalar = by_drive(0)  # r_o with half the bearing clearance
+    eccentricity: FloatArray = by_drive(1)  # actual ones of each crank, as the phases
     eccentric_phase: FloatArray = by_drive(1)
     crank_axes: ComplexArray = by_drive(1)
     bore_centres: ComplexArray = by_drive(1)
     wheel_axis: complex | ComplexArray = by_drive(0)
-    wheel_pin_leans: ComplexArray = by_drive(1)
+    wheel_pin_leans: ComplexArray = by_drive(1)  # without that of the wheel's axis
     hole_leans: ComplexArray = by_drive(1)
     shaft_pin_leans: ComplexArray = by_drive(1)
     wheel_lean: complex | ComplexArray = by_drive(0)
     crank_lean: complex | ComplexArray = by_drive(0)
-    cage_speed: BatchScalar = by_drive(0)
+    cage_speed: BatchScalar = by_drive(0)  # cage angle by crank angle, r_i/(r_i + r_o) with the nominal r_o
     reduction_ratio: float
 
     @classmethod
@@ -199,10 +184,7 @@ class Placement:
         return np.asarray(1.0 / (1.0 / self.shaft_pin_radii - 1.0 / self.hole_radii))
 
     def eccentric_directions(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the unit vectors from the crank axes to the centres of inner races and cages, fixed frame, shape (…, cranks).
-
-        They are the radial directions of the discs; the tangential ones are these times i (Eq. 75–76).
-        """
+        """Return unit vectors from crank axes to inner-race centres, the radial directions; tangential times i (Eq. 75–76)."""
         return unit(np.asarray(crank_angle)[..., None] + self.eccentric_phase)
 
     def eccentric_direction(self, crank_angle: FloatArray) -> ComplexArray:

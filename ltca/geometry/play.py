@@ -1,28 +1,9 @@
-r"""Free play of the wheel: its rotation while no body deforms, with all clearances together, crank held, discs floating.
+"""Free play of the wheel: its rotation while no body deforms, with all clearances together, crank held, discs floating.
 
-The farthest wheel angle of a disc at which no pair interferes is an optimisation over four unknowns, the pose of the disc and
-the angle of the wheel, with curved bounds. It is solved by successive linear programmes: gaps are linearised at a pose,
-
-.. math:: g_i - \nabla\delta_i \cdot d \ge -t,
-
-the wheel is turned as far as they allow after t, the overlap of parts there, is made least; the exact gaps at the new
-pose give the next programme. Corners of flanks are reached as by Newton's method. Races and holes bound a disc by arcs, and a
-farthest pose may lie where an arc and the turning have one tangent, which is no corner: arcs are convex, so their tangents at
-earlier poses remain bounds. The programmes are solved by the dual simplex method, all positions at once.
-
-Contacts in slices of parts that stand askew close at some height first: every pair has a gap at each place along its width where
-it may touch, and the lean of every disc joins its pose. What limits a lean is the contacts: the axial play of a disc is compared
-with its tilt by the checks and holds nothing here, as in the loaded analysis. Where nothing stands askew no lean gains anything,
-and the middles decide.
-
-The wheel is common to all discs: the play is the intersection of the ranges of its angle for all of them. Where wheel or
-cranks have clearance in their bearings, their displacements are common to all discs as well: then one programme has them all,
-with a circle for every bearing. Where parts overlap
-in every pose the drive is preloaded: parts keep the overlap of the pose in which it is least, and the play is what the other
-parts leave, none where the overlapping ones hold the wheel. Displacements beyond that are those of the loaded analysis.
-
-Over a turn the largest and the least play are those of sampled positions (`plays_over_a_turn`): the largest is within 0.2 % of
-the largest of the turn, and 0.3 % of that of all turns (docs/theory/conventions.md).
+The farthest wheel angle at which no pair interferes is found by successive linear programmes in the poses of the discs (joined
+where wheel or cranks are loose in their bearings): gaps are linearised, g − ∇δ·d ≥ −t, the overlap t is made least, then the
+wheel turned as far as they allow. Tangents of the arcs of races and holes at earlier poses remain bounds, as arcs are convex: the
+farthest pose may lie where arc and turning have one tangent. Definition and error over a turn: docs/theory/conventions.md.
 """
 
 from __future__ import annotations
@@ -95,15 +76,11 @@ PlayBefore = Callable[[FloatArray], FloatArray]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Play:
-    """Free play of the wheel at held crank angles, shape (positions,).
+    """Free play of the wheel at held crank angles, shape (positions,)."""
 
-    The wheel stops at the angles `forward` and `backward`, counter-clockwise and clockwise, rad, equal where it is not free.
-    Where it is `preloaded` parts overlap in every pose, and both hold for the least overlap.
-    """
-
-    forward: FloatArray
-    backward: FloatArray
-    preloaded: BoolArray
+    forward: FloatArray  # stop of the wheel counter-clockwise, rad
+    backward: FloatArray  # clockwise; equal where it is not free
+    preloaded: BoolArray  # parts overlap in every pose, and stops hold for the least overlap
 
     @property
     def play(self) -> FloatArray:
@@ -113,16 +90,13 @@ class Play:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnPlay:
-    """Free play of the wheel over one turn of the crank, rad: the largest and the least, and φ_C of both.
-
-    `preloaded` is the fraction of the positions where parts overlap in every pose.
-    """
+    """Largest and least free play of the wheel over one turn of the crank, rad, and φ_C of both."""
 
     largest: float
     least: float
     crank_angle: float
     crank_angle_of_least: float
-    preloaded: float
+    preloaded: float  # fraction of the positions where parts overlap in every pose
 
 
 PLAY_SAMPLED = "sampled over a turn"
@@ -132,8 +106,6 @@ PLAY_SAMPLED = "sampled over a turn"
 def preload_words(part: float) -> str:
     """Return a remark beside the free play of a drive that is preloaded over a fraction of the turn; empty for none.
 
-    Examples
-    --------
     >>> preload_words(0.25), preload_words(1.0)
     ('preloaded over 25 % of the turn', 'preloaded')
     """
@@ -143,15 +115,7 @@ def preload_words(part: float) -> str:
 
 
 def play_over_a_turn(discs: Sequence[ContactGeometry], before: PlayBefore | None = None) -> TurnPlay:
-    """Return the largest and the least free play of the wheel over one turn of the crank; `discs` are all those of one drive.
-
-    `before` is the play that what stands before the cranks adds at crank angles, rad.
-
-    Flank, holes and rollers have different periods: equally spaced positions would see few phases of some of them. So they lie
-    at multiples of the golden section, with more of them about the largest and the least until these are within some 0.2 %.
-    Both are called sampled wherever they are printed: positions that resolve every passage of a tooth, a hole or a roller, as
-    `ltca.analysis.extremes` has them, would take three to ten times as long.
-    """
+    """Return the largest and least free play over one turn of a drive of these discs, with the play that `before` adds."""
     (found,) = plays_over_a_turn([discs], before=None if before is None else [before])
     return found
 
@@ -161,11 +125,7 @@ def plays_over_a_turn(
     near: TurnPlay | None = None,
     before: Sequence[PlayBefore] | None = None,
 ) -> list[TurnPlay]:
-    """Return the same of several drives, each with its discs, of one `ltca.arrays.batch_layout`: as one batch.
-
-    Drives that are nearly one of which the play is known (`near`) have their extremes where that one has, but for a part of the
-    second order: they are looked at there alone, and take its share of preloaded positions.
-    """
+    """Return the same of several drives as one batch, or only where a drive nearly alike has its extremes (`near`)."""
     stacked = [stack_drives(discs, 1) for discs in zip(*drives, strict=True)]
 
     def plays(angle: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -181,6 +141,7 @@ def plays_over_a_turn(
         places = np.array([near.crank_angle, near.crank_angle_of_least])
         found, _ = plays(np.tile(places, (len(drives), 1)))
         return [replace(near, largest=float(own[0]), least=float(own[1])) for own in found]
+    # Flank, holes and rollers have different periods: equally spaced positions would see few phases of some of them.
     angle = np.tile(2.0 * np.pi * np.mod(GOLDEN * np.arange(POSITIONS), 1.0), (len(drives), 1))
     (play, preloaded), spread = plays(angle), 2.0 * np.pi / POSITIONS
     for _ in range(REFINEMENTS):
@@ -203,11 +164,7 @@ def plays_over_a_turn(
 
 
 def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, overlap: FloatArray | float = 0.0) -> Play:
-    """Return the free play of the wheel with every clearance at held crank angles φ_C, rad, shape (positions,).
-
-    `discs` are those of one drive, or of as many positions; parts may overlap by `overlap`, mm, at each position or everywhere.
-    ConvergenceError when nothing stops the wheel within half a pin pitch.
-    """
+    """Return the free play of the wheel at held crank angles, rad, of all discs; parts may overlap by `overlap`, mm."""
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     rows, sense = np.tile(np.arange(angle.size), 2), np.repeat([1.0, -1.0], angle.size)
     forward, backward = np.full(angle.size, np.inf), np.full(angle.size, -np.inf)
@@ -234,12 +191,9 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
 
 
 def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
-    """Return the farthest wheel angles of parts that are pressed in every pose, forward and backward, shape (2, positions).
-
-    Rollers that are too thick press a disc and leave its flank as free as before: pairs keep the overlap of the mean of the two
-    poses of least overlap, and the wheel turns as far as the other pairs allow. The programme has every position twice.
-    """
+    """Return the farthest wheel angles both ways, (2, positions), of parts that keep the mean overlap of two poses."""
     rows = np.arange(programme.angle.size)
+    # Rollers that are too thick press a disc and leave its flank as free as before.
     gap, _, _ = programme.gaps(rows, np.tile(poses.mean(axis=0), (2, 1)))
     programme.room = programme.room + RELIEF + np.maximum(-gap, 0.0)
     pose, _ = programme.farthest(np.repeat([1.0, -1.0], rows.size // 2))
@@ -247,11 +201,7 @@ def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
 
 
 def loose_poses(discs: Sequence[ContactGeometry], crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
-    """Return the poses of all members with wheel and cranks loose in their bearings, the wheel turned as far as it goes.
-
-    Poses have the coordinates of the whole drive, shape (positions, coordinates); `sense` is +1 or −1 by position, of the wheel.
-    ConvergenceError when nothing stops the wheel within half a pin pitch.
-    """
+    """Return poses of the whole drive, wheel and cranks loose, with the wheel turned as far as it goes in each sense."""
     programme, whole = _Programme(discs, crank_angle), replace(discs[0].coordinates, discs=len(discs))
     pose, _ = programme.farthest(sense)
     found = np.zeros((crank_angle.size, whole.size))
@@ -266,12 +216,7 @@ def _reach(geometry: ContactGeometry) -> FloatArray:
 
 
 class _Disc:
-    """The gaps of one disc at a batch of positions.
-
-    Where it leans every pair has them at the heights where it may touch: at both ends, and where one that is crowned or relieved
-    is pressed furthest at its tilt. What rollers, pins and flanks fall short by is convex: of a straight line the ends are the
-    first.
-    """
+    """The gaps of one disc at positions; where it leans, at the ends of every line and where a bent one is pressed most."""
 
     def __init__(self, geometry: ContactGeometry, angle: FloatArray, *, leans: bool) -> None:
         self.geometry, self.angle = geometry, angle
@@ -337,11 +282,9 @@ def _shape(drop: FloatArray) -> tuple[Rows, bool]:
 
 
 class _Programme:
-    """The gaps of discs at a batch of positions, with wheel and cranks free within circles in their bearings, and the farthest
-    wheel angle that they allow.
+    """The gaps of discs, with wheel and cranks free within circles in their bearings, and the farthest wheel angle allowed.
 
-    Its poses are x, y, rotation and lean, if they lean, of disc after disc, the displacements in each bearing that is loose
-    anywhere, crank after crank, those of the wheel, by the radius of their circles, and the angle of the wheel.
+    Poses: x, y, rotation (and lean) of disc after disc; displacements in loose bearings by their radius; the wheel angle.
     """
 
     def __init__(self, discs: Sequence[ContactGeometry], angle: FloatArray, room: FloatArray | float = 0.0) -> None:
@@ -396,9 +339,7 @@ class _Programme:
         return found
 
     def gaps(self, rows: Rows, pose: FloatArray) -> tuple[FloatArray, FloatArray, int]:
-        """Exact gaps of all discs and of the circles with the room, mm, their derivatives by scaled coordinates, and the number
-        of arcs, which come first; then flanks and a polygon about each circle.
-        """
+        """Exact gaps with the room, mm, their derivatives by scaled coordinates, and the number of arcs, which come first."""
         arcs, others = list[_Gap](), list[_Gap]()
         for disc, each in zip(self.discs, self.maps, strict=True):
             own = each[rows]
@@ -499,12 +440,7 @@ def _tangents_of(slope: FloatArray, gap: FloatArray, place: FloatArray, chosen: 
 def _farthest(
     normal: FloatArray, room: FloatArray, sense: FloatArray, bound: FloatArray, start: Rows | None = None
 ) -> tuple[FloatArray, FloatArray, Rows]:
-    """Turn the wheel as far as linear gaps allow, after the least overlap: normal · d ≤ room + t, |d| ≤ bound, t ≥ 0.
-
-    Normals by scaled coordinates have the shape (rows, pairs, coordinates), rooms (rows, pairs), senses, +1 or −1, and bounds
-    (rows,); lengths are in mm. Returned are d, t and the active constraints, one more than coordinates in each row: numbers of
-    pairs, and below zero of bounds. `start` are those of a similar programme.
-    """
+    """Turn the wheel furthest after the least overlap t, normal · d ≤ room + t, |d| ≤ bound; return d, t, active constraints."""
     rows, pairs, size = normal.shape
     fixed = 2 * size + 1
     matrix = np.zeros((rows, pairs + fixed, size + 1))

@@ -1,9 +1,4 @@
-"""True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65).
-
-At the distance l from the contact point along the tangent a circle of radius r has departed from it by r − √(r² − l²), and
-the flank by h(l), from its equation. To second order both are the parabola l²/(2ρ) of the tables; ``direct`` includes the
-higher orders.
-"""
+"""True separation of two touching surfaces along their common tangent (Eq. 17–19, 53–58, 65), for grids."""
 
 from __future__ import annotations
 
@@ -18,11 +13,7 @@ MAX_ITERATIONS = 40
 
 
 def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
-    """Return r − √(r² − l²), the departure of a circle from its tangent at the distance l, mm (Eq. 17, 53–54).
-
-    The radius is negative for the concave side (a bore), whose departure is negative. Computed as l²/(r + √(r² − l²)), without
-    cancellation; infinite beyond the radius, where the circle has no points.
-    """
+    """Return r − √(r² − l²), the departure of a circle from its tangent at l, mm (Eq. 17, 53–54); a bore has r < 0."""
     size = abs(radius)
     square = np.asarray(tangent_distance, dtype=float) ** 2
     inside = square < size**2
@@ -31,11 +22,7 @@ def circle_departure(tangent_distance: FloatArray, radius: float) -> FloatArray:
 
 
 def flank_departure(profile: FlankProfile, parameter: float, tangent_distance: FloatArray) -> FloatArray:
-    """Return h, the departure of the flank from its tangent at the contact point θ, mm, positive into the disc (Eq. 18–19, 65).
-
-    `parameter` is θ, rad; `tangent_distance` is l along the tangent in the sense of growing θ, mm. ConvergenceError where the
-    flank has no point at such a distance next to the contact point.
-    """
+    """Return h of the flank from its tangent at θ, mm, positive into the disc, at distances l along it (Eq. 18–19, 65)."""
     at = np.array(parameter)
     origin = profile.flank(at)
     normal = profile.normal(at)

@@ -1,11 +1,6 @@
-r"""A contact in series with the seat of a loose pin or sleeve and with the bending of the pin.
+"""A contact in series with the seat of a loose pin or sleeve and with the bending of the pin: δ = ε + s(F) + c F, F = f(ε).
 
-Contact, seat and beam carry the same load F,
-
-.. math:: \delta = \epsilon + s(F) + c F, \qquad F = f(\epsilon),
-
-with the law f of the surfaces in contact, the approach s of the seat and the flexibility c of the pin. A pin that yields along
-the common normal leaves the place of the contact where it is, so this is exact.
+A pin that yields along the common normal leaves the place of the contact where it is, so this is exact (docs/theory/seats.md).
 """
 
 from __future__ import annotations
@@ -41,19 +36,13 @@ HALF_SPACE_DATUM = 0.7
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackedLaw(ContactLaw):
-    """Contacts of one kind in series with the seats of their pins, or their sleeves, and the bending of these.
-
-    `play` is the radial one of the seats, mm, shape (pairs,) or (positions, pairs), `flexibility` c of the pin's bending, mm/N.
-    `overlap` is the compliance counted twice, mm/N: that of a sleeve below half its wall, where the law of the sleeve begins, is
-    part of the contact's law as well. It is subtracted, up to `MAX_OVERLAP` of the contact's approach; where it would be more,
-    the contact is as wide as the wall and no law holds.
-    """
+    """Contacts of one kind in series with the seats of their pins, or their sleeves, and the bending of these."""
 
     contact: ContactLaw
     seat: ConformingLaw | None = None
-    play: FloatArray = by_drive(1)
-    flexibility: float = 0.0
-    overlap: float = 0.0
+    play: FloatArray = by_drive(1)  # radial, of the seats, mm, shape (pairs,) or (positions, pairs)
+    flexibility: float = 0.0  # c of the pin's bending, mm/N
+    overlap: float = 0.0  # compliance counted twice, mm/N: of a sleeve below half its wall (`counted_twice`)
 
     def behind(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return s + c F and its derivative, mm and mm/N."""
@@ -64,10 +53,7 @@ class BackedLaw(ContactLaw):
         return given, slope
 
     def counted_twice(self, near: FloatArray, load: FloatArray, stiffness: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return what is subtracted from the approach `near` of the surfaces, smoothly bounded, mm, and its derivative by it.
-
-        `load` and `stiffness` are those of the surfaces at that approach, N and N/mm.
-        """
+        """Return the smoothly bounded part to subtract of the approach of the surfaces, mm, and its derivative by that."""
         if not self.overlap:
             return np.zeros_like(near), np.zeros_like(near)
         most, whole = MAX_OVERLAP * near, self.overlap * np.maximum(load, 1e-300)
@@ -102,11 +88,7 @@ class BackedLaw(ContactLaw):
         return solved
 
     def _of_closed(self, delta: FloatArray, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The same for closed contacts: bracketed Newton's method with Halley's correction from the last two slopes.
-
-        A loop of its own rather than a library's: it runs in every iteration of an equilibrium, and load, stiffness and the last
-        step come out of it.
-        """
+        """The same for closed contacts, in a loop of its own that every equilibrium runs, with Halley's step from two slopes."""
         near, last, slope_before = 0.5 * delta, np.zeros_like(delta), np.zeros_like(delta)
         history: list[float] = []
         # Every evaluation moves one of these bounds. The approach may exceed the whole where an overlap is subtracted.
@@ -151,12 +133,7 @@ class BackedLaw(ContactLaw):
 
 
 def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of the wheel pins of a drive of one disc (`ltca.drive.single_discs`): contact, seats and beams in series.
-
-    `contact` is the law of pins, or their sleeves, and flank, returned as it is for fixed pins that do not bend; `play` is that
-    of each pin in its seat, shape (z_P,) or (positions, z_P), mm. `depth` is the depth in mm down to which `contact` counts a
-    sleeve, by default that of a half-space as long as the disc is thick.
-    """
+    """Return the law of wheel pins of a drive of one disc, seats and beams behind `contact`, which counts sleeves to `depth`."""
     beam, seat = wheel_pin_beam(drive), wheel_pin_seat(drive)
     if beam is None and seat is None:
         return contact
@@ -165,10 +142,7 @@ def back_wheel_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: 
 
 
 def back_shaft_pins(drive: Drive, contact: ContactLaw, play: FloatArray, depth: float | None = None) -> ContactLaw:
-    """Return the law of shaft pins and holes of a drive of one disc, with the sleeves behind it, as `back_wheel_pins`.
-
-    `depth` is None where `contact` is a spring that has nothing of the sleeve.
-    """
+    """Return the law of shaft pins and holes of a drive of one disc, sleeves behind it; `depth` None for springs."""
     seat, shaft = shaft_pin_seat(drive), drive.pin_shaft
     if seat is None or shaft is None:
         return contact
@@ -183,9 +157,7 @@ def _datum(drive: Drive, part: PinWheel | PinShaft) -> float:
 
 
 def sleeve_overlap(drive: Drive, part: PinWheel | PinShaft, depth: float) -> float:
-    """Return the compliance of a half-plane of the sleeve between that depth and another, 2 (1 − ν²) ln(D/d)/(π E L), mm/N; zero
-    without sleeve.
-    """
+    """Return the compliance of the sleeve's half-plane from its law's datum to a depth, 2 (1 − ν²) ln(D/d)/(π E L), mm/N."""
     if part.seat.kind != "sleeve":
         return 0.0
     compliance = drive.materials.sleeve.plane_strain_compliance
@@ -199,10 +171,7 @@ def shaft_pin_stiffness(drive: Drive) -> float:
 
 
 def tip_motion(drive: Drive) -> dict[str, Any]:
-    """Return the displacement of a shaft pin at the disc, and its lean, 1/mm, per displacement of its tip by the ring.
-
-    They are `tip_share` and `tip_slope` of `ltca.geometry.pairs.ContactGeometry`; nothing without ring, no lean without slices.
-    """
+    """Return `tip_share` and `tip_slope` of `ltca.geometry.pairs.ContactGeometry`, the latter in slices; nothing without ring."""
     beam = shaft_pin_beam(drive)
     if beam is None or beam.ends[1] == "free":
         return {}

@@ -1,19 +1,7 @@
-r"""Stiffness of rolling bearings in five directions, in closed form: rows with contact angles, alone or in pairs.
+"""Stiffness of rolling bearings in five directions, in closed form: rows with contact angles, alone or in pairs.
 
-Every rolling element of a preloaded row presses along its contact normal, :math:`n = (\cos\alpha\cos\psi, \cos\alpha\sin\psi,
-s\sin\alpha)`, through :math:`p = (R\cos\psi, R\sin\psi, z)`. Linearised about the preload all elements have one stiffness
-:math:`k_n`, and the stiffness of the row is :math:`k_n \sum g g^T` with :math:`g = (n, p \times n)` (Jones, J. Basic Eng. 82
-(1960) 309; Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., ch. 7 and 11; Lim & Singh, J. Sound Vib. 139
-(1990) 179). The sums over the circle are those of :math:`\cos^2\psi` and :math:`\sin^2\psi`, Z/2 each:
-
-.. math:: k_{xx} = \tfrac{Z}{2} k_n \cos^2\alpha, \quad k_{zz} = Z k_n \sin^2\alpha, \quad k_{x\theta_y} = k_{xx} h, \quad
-          k_{y\theta_x} = -k_{xx} h, \quad k_{\theta\theta} = k_{xx} h^2, \qquad h = z - s R\tan\alpha,
-
-with the place h of the pressure centre, where the contact normals meet the axis. The contact angle is taken as constant, and
-centrifugal forces and gyroscopic moments are left out.
-
-A bearing with clearance yields by nothing within it; a preloaded one has two sides, of which one lifts off. Both are one law
-in series with a spring (`SideLaw`).
+Linearised about the preload a row has k_n Σ g gᵀ, g = (n, p × n) (docs/how-to/supports.md; Jones, J. Basic Eng. 82 (1960) 309;
+Harris & Kotzalas, Essential Concepts of Bearing Technology, 5th ed., ch. 7, 11; Lim & Singh, J. Sound Vib. 139 (1990) 179).
 """
 
 from __future__ import annotations
@@ -29,28 +17,20 @@ from ltca.arrays import FloatArray
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RollingRow:
-    """A row of rolling elements about its working point, by its stiffnesses, N/mm.
-
-    `pressure_centre` is the place h where the contact normals meet the axis, mm, `reach` the radial displacement at which the
-    elements opposite to the load lift off, mm, and `normal_load` the sum of the normal loads of all by the preload, N.
-    """
+    """A row of rolling elements about its working point, by its stiffnesses, N/mm."""
 
     radial: float
     axial: float
-    pressure_centre: float
-    reach: float = inf
-    normal_load: float = 0.0
+    pressure_centre: float  # h = z ∓ R tan α, where the contact normals meet the axis, mm
+    reach: float = inf  # radial displacement at which the elements opposite to the load lift off, mm
+    normal_load: float = 0.0  # sum of the normal loads of all by the preload, N
 
     @classmethod
     def of_axial(
         cls, axial: float, contact_angle: float, *, plane: float = 0.0, pitch_radius: float = 0.0, facing: int = 1
     ) -> RollingRow:
-        """Return the row with an axial stiffness, N/mm, a contact angle, rad, and the plane and radius of its contacts, mm.
+        """Return the row with an axial stiffness, N/mm, and a contact angle, rad; `facing` +1 presses the outer ring towards +z.
 
-        `facing` is the sign of the axial part of the normals by which it presses the outer ring: +1 towards +z.
-
-        Examples
-        --------
         >>> row = RollingRow.of_axial(1e5, np.pi / 4, plane=10.0, pitch_radius=30.0, facing=-1)
         >>> print(f"{row.radial:.1f} {row.pressure_centre:.1f}")
         50000.0 40.0
@@ -59,11 +39,8 @@ class RollingRow:
         return cls(radial=radial, axial=axial, pressure_centre=plane - facing * pitch_radius * tan(contact_angle))
 
     def pressed(self, contact_angle: float, force: float, displacement: float) -> RollingRow:
-        """Return the row under an axial preload, N, that presses it in by a displacement, mm: elements by δ sin α, loads P/sin α
-        together, and a radial displacement takes cos α of itself off the elements opposite to the load.
+        """Return the row under an axial preload P, N, with a displacement δ, mm: it lifts off at δ tan α, loads sum to P/sin α.
 
-        Examples
-        --------
         >>> row = RollingRow.of_axial(1e5, np.pi / 4).pressed(np.pi / 4, 500.0, 0.005)
         >>> print(f"{row.reach:.4f} {row.normal_load:.1f}")
         0.0050 707.1
@@ -93,38 +70,17 @@ def facing_of(arrangement: str, plane: float, middle: float) -> int:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SideLaw:
-    r"""A bearing in a radial direction: a spring in series with what it yields by its clearance, or when one side lifts off.
+    """A bearing in a radial direction: under a force R it yields R/k + w, w ≤ g at R = 0, w = g + c (R − R₀)⁺ beyond."""
 
-    Under a force R the ring is displaced by :math:`R/k + w` along R, with :math:`w = g` (anywhere within g at R = 0) and
-    :math:`w = c\,(R - R_0)^+`.
-
-    Attributes
-    ----------
-    stiffness : float
-        k, N/mm.
-    gap : float
-        g, mm.
-    lift_off : float
-        R_0 at which one side lifts off, N.
-    beyond : float
-        c, mm/N: beyond lift-off the flexibility is 1/k + c.
-    preload_load : float
-        Sum of the loads of all elements at rest, N, by which a preloaded bearing rubs: of two sides twice the preload, of rows
-        with contact angles Σ P/sin α.
-    """
-
-    stiffness: float
-    gap: float = 0.0
-    lift_off: float = 0.0
-    beyond: float = 0.0
-    preload_load: float = 0.0
+    stiffness: float  # k, N/mm
+    gap: float = 0.0  # g, mm
+    lift_off: float = 0.0  # R₀, at which one side lifts off, N
+    beyond: float = 0.0  # c, mm/N
+    preload_load: float = 0.0  # sum of the loads of all elements at rest, by which it rubs, N
 
     @classmethod
     def of_clearance(cls, side: float, clearance: float) -> SideLaw:
-        """Return the law of a bearing whose side that carries has a stiffness, N/mm, by its diametral clearance, mm.
-
-        A tight one (negative) has both sides carry, 2k, until one lifts off: loose and tight meet without a jump.
-        """
+        """Return the law of a bearing by the stiffness of a side, N/mm, and diametral clearance, mm; tight, both sides carry."""
         if clearance >= 0.0:
             return cls(stiffness=side, gap=0.5 * clearance)
         pressed = -side * clearance
@@ -132,23 +88,14 @@ class SideLaw:
 
     @classmethod
     def of_preload(cls, both: float, force: float | None, displacement: float | None) -> SideLaw:
-        """Return the law of a bearing that has a stiffness, N/mm, while both sides carry, by its preload, N or mm.
-
-        Two sides of k/2 each, pressed together by P or by δ: one lifts off at 2P = kδ.
-        """
+        """Return the law of two sides of k/2 each, N/mm, pressed together by P, N, or δ, mm: one lifts off at 2P = kδ."""
         lift_off = both * displacement if displacement is not None else 2.0 * (force or 0.0)
         return cls(stiffness=both, lift_off=lift_off, beyond=1.0 / both, preload_load=lift_off)
 
     @classmethod
     def of_rows(cls, rows: Sequence[RollingRow]) -> SideLaw:
-        """Return the law of rows side by side, of which at least one is preloaded.
+        """Return the law of rows side by side, of which the preloaded ones lift off together at the mean of their reaches.
 
-        Preloaded ones lift off on one side and are half as stiff from there, others keep their stiffness. Rows with reaches δ_i
-        of their own lift off together at the mean of these by the stiffness: force and stiffness are right before the first
-        and beyond the last of them.
-
-        Examples
-        --------
         >>> loaded = RollingRow(radial=1e5, axial=0.0, pressure_centre=0.0, reach=0.005, normal_load=800.0)
         >>> law = SideLaw.of_rows([loaded, RollingRow(radial=5e4, axial=0.0, pressure_centre=0.0)])
         >>> print(f"{law.lift_off:g} N, {1.0 / (1.0 / law.stiffness + law.beyond):g} N/mm beyond")

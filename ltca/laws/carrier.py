@@ -1,22 +1,7 @@
-r"""How the far flange of a carrier moves against the near one: posts as beams, flanges as strips that bend between posts.
+"""Motion of the far flange of a carrier against the near one: posts as beams, flanges as strips that bend between posts.
 
-A post of length L is a round Timoshenko beam between two flanges that stay parallel (their tilt is left out). Under a force F
-across it bends in an S; the ends carry moments :math:`M_1 + M_2 = FL` and turn by :math:`c_i M_i` where the flanges bend.
-By Castigliano's theorem the flange moves by
-
-.. math:: \Delta = F \left[\frac{L^3}{3EI} + \frac{L}{\kappa GA} + c_2 L^2\right]
-   - M_1 L \left[\frac{L}{2EI} + c_2\right], \qquad M_1 = FL\,\frac{L/2EI + c_2}{L/EI + c_1 + c_2} ,
-
-which is :math:`FL^3/12EI + FL/\kappa GA` between rigid flanges. A flange of thickness t turns where a post is fixed: between two
-posts it is a strip that both bend alike, :math:`6EI_s/s` at each end, with the free length :math:`s = 2\pi R/n - d` along the
-circle of the posts and the width R of a flange from R/2 to 3R/2; a post has such a strip on either side,
-
-.. math:: c = \frac{s}{12 E I_s} = \frac{s}{E R t^3} .
-
-Thin plates of usual outlines by finite elements tilt from 0.8 to 1.25 times as far (``tests/fem/test_flange_of_a_carrier.py``).
-n posts on the circle R resist x and y with n times the stiffness k of one, and rotation with
-:math:`n(kR^2 + GJ/L)`; in series with rotation stands the far flange itself, sheared between the circle of the posts and that
-of the pins or cranks, :math:`|1/R^2 - 1/R_P^2|/4\pi Gt` (an annular disc in torsion).
+Flanges stay parallel, κ is Cowper's (1966). A post of length L under a force F across turns its ends by c_i M_i, M₁ + M₂ = F L:
+by Castigliano's theorem Δ = F [L³/3EI + L/κGA + c₂ L²] − M₁ L [L/2EI + c₂], M₁ = F L (L/2EI + c₂)/(L/EI + c₁ + c₂).
 """
 
 from __future__ import annotations
@@ -32,16 +17,9 @@ from ltca.drive.parts import Drive
 def post_stiffness(
     length: float, diameter: float, youngs_modulus: float, poisson_ratio: float, ends: tuple[float, float] = (0.0, 0.0)
 ) -> tuple[float, float]:
-    """Return the force by unit displacement of one post's far end that does not turn, N/mm, and its moment by twist, N·mm/rad.
+    """Return force by displacement, N/mm, and moment by twist, N·mm/rad, of a post whose `ends` turn by moments, rad/(N·mm).
 
-    Lengths are in mm, `ends` the rotation of each end by its moment, rad/(N·mm); the shear coefficient is that of Cowper (1966),
-    6(1 + ν)/(7 + 6ν).
-
-    Examples
-    --------
-    A long post between rigid flanges resists with 12 EI/L³:
-
-    >>> across, _ = post_stiffness(1e4, 10.0, 2e5, 0.3)
+    >>> across, _ = post_stiffness(1e4, 10.0, 2e5, 0.3)  # a long post between rigid flanges, 12 EI/L³
     >>> print(f"{across / (12.0 * 2e5 * pi * 10.0**4 / 64.0 / 1e12):.4f}")
     1.0000
     """
@@ -56,24 +34,16 @@ def post_stiffness(
 
 
 def flange_compliance(thickness: float, number: int, radius: float, size: float, youngs_modulus: float) -> float:
-    """Return the rotation of a flange at the end of a post by its moment, rad/(N·mm).
+    """Return c = s/(E R t³), s = 2πR/n − d, the rotation of a flange at the end of each of n posts by its moment, rad/(N·mm).
 
-    `number` posts of a diameter `size` stand on a circle of a radius, lengths in mm, and all tilt alike.
-
-    Examples
-    --------
-    Posts that touch each other leave nothing to bend:
-
-    >>> flange_compliance(10.0, 6, 30.0, 10.0 * pi, 2e5)
+    >>> flange_compliance(10.0, 6, 30.0, 10.0 * pi, 2e5)  # posts that touch leave nothing to bend
     0.0
     """
     return max(2.0 * pi * radius / number - size, 0.0) / (youngs_modulus * radius * thickness**3)
 
 
 def far_flange_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the forces on the far flange by its x, y and rotation, shape (3, 3), N/mm, N/rad and N·mm/rad; None without
-    posts.
-    """
+    """Return the forces on the far flange by its x, y and rotation, N, mm, rad, shape (3, 3); None without posts."""
     carrier, posts = drive.carrier, drive.posts
     if carrier is None or posts is None:
         return None

@@ -1,26 +1,7 @@
-r"""Load–approach law of a conforming seat: a round pin in a bore that is hardly larger, without friction, plane strain.
+"""Load–approach law of a conforming seat: a round pin in a bore that is hardly larger, without friction, plane strain.
 
-At usual loads the arc of such a contact is not small compared with the radius, and Hertz' solution does not hold. Here the
-pressure acts on circles: a solid cylinder (force balanced by a uniform body force, displacement relative to its mean over
-the section) in a circular hole of an infinite body (displacement relative to the mean one of a concentric circle, the datum,
-in the direction of the load). Michell's solutions for the pressure :math:`p = p_0 + \sum p_n \cos n\theta` on the radius a
-give the radial displacements, κ = 3 − 4ν, μ the shear modulus:
-
-=======  =================================================  ==================================================================
-n        pin, inward, per p_n a / 4μ                        bore, outward, per p_n a / 4μ
-=======  =================================================  ==================================================================
-0        κ − 1                                              2
-1        (κ − 1)/2                                          2κ/(κ + 1) · ln(datum/a) + 1/2
-n ≥ 2    κ/(n + 1) + 1/(n − 1)                              κ/(n − 1) + 1/(n + 1)
-=======  =================================================  ==================================================================
-
-They fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α: `ltca.laws.seats.arc` solves that for a given arc,
-`ltca.laws.seats.series` tabulates it over the load, once for each pair of materials; the first harmonic adds a spring, the
-only part that depends on the datum. docs/theory/seats.md has the whole derivation, with figures.
-
-Both circles are taken at :math:`a = \sqrt{r r_s}`, which keeps Hertz' curvature exact; where the play is wide the arc is
-small, and there the logarithms of both radii count. Left out: finite displacements, friction, and the outer boundary of the
-body with the bore.
+Pin and bore are circles of the radius a = √(r r_s) under p = p₀ + Σ pₙ cos nθ (Michell; docs/theory/seats.md). The first harmonic
+is a spring, the only part that depends on the datum. Finite displacements and the outer boundary of the bore's body are left out.
 """
 
 from __future__ import annotations
@@ -42,17 +23,14 @@ SMALLEST_BREATHING = 0.02
 
 
 class _Seat(NamedTuple):
-    """Dimensionless numbers of a pin and the body around it; `part`, E*/4μ, and `kappa` are those of that body.
-
-    They are rounded where series are looked up by them, so that materials that differ in the last bit share one.
-    """
+    """Dimensionless numbers of a pin and the body around it, rounded so that nearly the same materials share a series."""
 
     modulus: float
     radius: float
     mismatch: float
     breathing: float
-    kappa: float
-    part: float
+    kappa: float  # of the body around the pin
+    part: float  # its E*/4μ
     first: float
 
 
@@ -82,36 +60,19 @@ def _seat(pin: Material, bore: Material, pin_radius: float, bore_radius: float, 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConformingLaw:
-    """Law of one pin in one bore, for any play small compared with the radius.
-
-    Loads are in N, at least 0, and plays (bore radius less pin radius) in mm, at least 0; they broadcast. Approaches are the
-    travel of the pin from where it touches, relative to the datum. `length` and `radius`, a, are in mm, `contact_modulus`, E*, in
-    MPa; `first_harmonic` is the approach of the harmonic n = 1, datum included, in F/(L E*).
-    """
+    """Law of one pin in one bore, by loads, N, and plays (radial), mm, at least 0; approaches are from touching, by the datum."""
 
     length: float
-    radius: float
-    contact_modulus: float
-    first_harmonic: float
+    radius: float  # a, mm
+    contact_modulus: float  # E*, MPa
+    first_harmonic: float  # approach of the harmonic n = 1, datum included, in F/(L E*)
     series: ConformingSeries
 
     @classmethod
     def of_bodies(
-        cls,
-        *,
-        pin: Material,
-        bore: Material,
-        pin_radius: float,
-        bore_radius: float,
-        datum_radius: float,
-        length: float,
+        cls, *, pin: Material, bore: Material, pin_radius: float, bore_radius: float, datum_radius: float, length: float
     ) -> ConformingLaw:
-        """Return the law of a pin in a bore.
-
-        `pin` and `bore` are the materials of the solid cylinder and of the body around it; lengths are in mm. The approach is
-        measured relative to the mean displacement of the circle of `datum_radius` about the bore. Radii or a length that leave
-        no such bodies are refused (DriveError).
-        """
+        """Return the law of a pin in a bore, relative to the circle of `datum_radius` about it; lengths in mm."""
         if not datum_radius >= bore_radius:
             raise DriveError([f"datum radius {datum_radius:g} mm: must be at least {bore_radius:g} mm, the bore"])
         seat = _seat(pin, bore, pin_radius, bore_radius, length)
@@ -130,13 +91,7 @@ class ConformingLaw:
         datum: float,
         length: float,
     ) -> ConformingLaw:
-        """Return the law of a sleeve between its pin and a load outside, in line: pin, seat and wall of the sleeve.
-
-        The load outside is narrow compared with the wall. The law of that contact counts the sleeve as a half-plane down to the
-        distance `datum` (`ltca.laws.plane_strain`); the rest of the travel between the pin and the patch outside is here. With
-        a datum much larger than the wall the rest may be zero or negative. Lengths are in mm; those that leave no such bodies
-        are refused (DriveError).
-        """
+        """Return the law of pin, seat and wall of a sleeve under a narrow load outside, which counts it down to `datum`; mm."""
         if not outer_radius > bore_radius:
             raise DriveError(
                 [f"outer radius {outer_radius:g} mm of a sleeve: must be greater than {bore_radius:g} mm, its bore"]

@@ -14,14 +14,11 @@ from ltca.errors import ConvergenceError
 MAX_ITERATIONS = 100
 """Newton steps from a load to its approach."""
 SETTLED = 1e-7
-"""Relative change of the approach at which they end: quadratic, 1e-14 is left; 1e-8 of the derivative, the last step's."""
+"""Relative change of the approach at the end: quadratic, 1e-14 is left; 1e-8 of the derivative, the last step's."""
 
 
 class ContactLaw(ABC):
-    """Load of contacts pressed together: smooth, and rising with the approach.
-
-    Approaches and effective radii of curvature are in mm and broadcast; an open contact, approach ≤ 0, carries nothing.
-    """
+    """Load of contacts pressed together, smooth and rising with the approach, mm; zero where open, approach ≤ 0."""
 
     __slots__ = ()
 
@@ -49,17 +46,11 @@ class ContactLaw(ABC):
         return self, np.asarray(approach, dtype=float)
 
     def take(self, shape: tuple[int, ...], places: Any) -> ContactLaw:
-        """Return the law of some contacts of a batch.
-
-        `shape` is (positions, pairs) and `places` index an array of that shape: a mask, or a tuple of arrays of numbers.
-        """
+        """Return the law of some contacts of a batch of `shape`, by a mask or a tuple of arrays of numbers."""
         return self
 
     def approach_at_load(self, load: FloatArray, effective_radius: ArrayLike) -> tuple[FloatArray, FloatArray]:
-        """Return the approach at a load and its derivative, mm and mm/N; zero where there is no load.
-
-        ConvergenceError where Newton's method, which needs a convex law, does not settle.
-        """
+        """Return the approach at a load and its derivative, mm and mm/N, by Newton's method on a convex law; 0 without load."""
         force, radius = np.broadcast_arrays(np.asarray(load, dtype=float), np.asarray(effective_radius, dtype=float))
         loaded = force > 0.0
         law, force, radius = self.take(loaded.shape, loaded), force[loaded], radius[loaded]

@@ -1,12 +1,7 @@
-r"""Load–approach law of an uncrowned line contact between two half-spaces.
+"""Load–approach law of an uncrowned line contact between two half-spaces, U = ∫ F dδ = E* L δ²/w(X), X = ln(ρδ/L²) = −2 ln λ.
 
-With the parabolic separation x²/(2ρ) over the length L nothing but λ = L/√(ρδ) is left in the dimensionless
-problem: load F/(E* δ L), mid-width pressure p √ρ/(E* √δ) and half-width b/√(ρδ) are functions of λ, so one table
-serves every pin and roller. The table holds the energy U = ∫F dδ = E* L δ² / w(X), X = ln(ρδ/L²) = −2 ln λ: w
-is smooth and nearly linear in X for long contacts, the load and the stiffness are exact derivatives of one
-function (what an equilibrium solver by minimum potential needs), and the energy is closed.
-
-The table ships with the package as ``line_contact.json``; `validation.shipped_tables` makes it.
+Everything is a function of λ = L/√(ρδ), so one table serves all pins and rollers (docs/theory/contact.md); w is smooth and nearly
+linear for long contacts, and load and stiffness are exact derivatives of U. `validation.shipped_tables` makes the table.
 """
 
 from __future__ import annotations
@@ -32,9 +27,7 @@ TABLE = Path(__file__).with_name("line_contact.json")
 
 @dataclass(frozen=True, slots=True)
 class LineContactTable:
-    """The dimensionless law of uncrowned line contact, as curves over X = ln(ρδ/L²): E* L δ²/U of the energy, E*² δ/(ρ p²) of the
-    mid-width pressure and ρδ/b² of the half-width.
-    """
+    """Curves over X = ln(ρδ/L²): E* L δ²/U, E*² δ/(ρ p²) at mid-width and ρδ/b²."""
 
     inverse_energy: SlendernessCurve
     inverse_square_pressure: SlendernessCurve
@@ -43,11 +36,7 @@ class LineContactTable:
 
 @cache
 def line_contact_table() -> LineContactTable:
-    """Return the dimensionless table that ships with the package (read once in the process).
-
-    `validation.shipped_tables` makes it. It is read, not solved: solving takes half a second, with last digits that depend on
-    the machine.
-    """
+    """Return the table that ships with the package, read once: solved again, its last digits would depend on the machine."""
     stored = json.loads(TABLE.read_text(encoding="utf-8"))
     curves = {
         name: SlendernessCurve(**curve | {"coefficients": np.array(curve["coefficients"])})
@@ -58,19 +47,7 @@ def line_contact_table() -> LineContactTable:
 
 @dataclass(frozen=True, slots=True)
 class LineContactLaw(ContactLaw):
-    """Load, stiffness, energy, pressure and half-width of uncrowned cylinders of one length and modulus.
-
-    An open contact gives zeros. The load is continuously differentiable where the approach is positive.
-
-    Parameters
-    ----------
-    length : float or array, shape (pairs,)
-        Length of the line contact, mm.
-    contact_modulus : float or array, shape (pairs,)
-        E* = 1/((1−ν1²)/E1 + (1−ν2²)/E2), MPa.
-    table : LineContactTable, optional
-        The dimensionless law; default `line_contact_table`.
-    """
+    """Uncrowned cylinders of lengths L, mm, and moduli E*, MPa, numbers or of shape (pairs,); continuously differentiable."""
 
     length: float | FloatArray
     contact_modulus: float | FloatArray

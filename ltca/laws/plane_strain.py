@@ -1,14 +1,7 @@
-r"""Load–approach law of a line contact in plane strain, with a datum.
+"""Load–approach law of a line contact in plane strain, δ = 2q/(π E*) (ln(2D/b) + 1/2), b² = 4 q ρ/(π E*), with a datum D.
 
-A half-plane alone defines no approach: it has to be measured relative to some depth, the same for the law and for the
-flexibility of the rest of the body. Here the approach is that of bodies whose displacement follows the logarithm of the
-half-plane down to the distance D, the datum distance:
-
-.. math:: \delta = \frac{2 q}{\pi E^*} \left( \ln\frac{2D}{b} + \tfrac12 \right), \qquad
-          b^2 = \frac{4 q \rho}{\pi E^*},
-
-which is the pressure-weighted mean of the displacements over the patch plus the mean separation b²/(8ρ) (a quarter
-of the bracket each for the self-energy of the semi-elliptic pressure and for the separation).
+A half-plane alone has no approach: D is where the rest of the body takes over. The approach is the pressure-weighted mean
+displacement over the patch and the mean separation b²/(8ρ), a quarter of the bracket each.
 """
 
 from __future__ import annotations
@@ -29,7 +22,7 @@ SELF_ENERGY = 0.25
 
 
 _LIGHTEST, _HEAVIEST, _KNOTS = -46.0, -0.3, 4097
-"""ln X at the ends of the curve and its knots; from the heavier end on, at a half-width of 0.8 datums, there is no law."""
+"""ln X at the ends of the curve and its knots; beyond the heavier end, a half-width of 0.8 datums, there is no law."""
 _PER_KNOT = (_KNOTS - 1) / (_HEAVIEST - _LIGHTEST)
 
 
@@ -51,10 +44,7 @@ def _ratio(place: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def plane_load(place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    r"""Return Q/X and its derivative by ln X of the law in its own measure, :math:`X = Q (\ln(4/Q) + 1)/2`, in the array itself.
-
-    X = 2 δρ/D² and Q = (b/D)²; a line load is π E* δ/2 times Q/X. `place` is ln X; where there is no law a power goes on.
-    """
+    """Return Q/X = 2q/(π E* δ) and its derivative by ln X, X = 2 δρ/D² = Q (ln(4/Q) + 1)/2, Q = (b/D)², overwriting ln X."""
     light = heavy = None
     if place.size and not (place.min() >= _LIGHTEST and place.max() < _HEAVIEST):
         light, heavy = place < _LIGHTEST, place >= _HEAVIEST

@@ -1,12 +1,7 @@
-r"""Load–approach law of line contacts that are crowned or relieved along their length.
+"""Load–approach law of line contacts that are crowned or relieved along their length, U = E* L δ² exp(−m(X, ln ρ)).
 
-A profile z(y) brings lengths of its own, so load depends on the approach and on the effective radius. With the
-modulus scaled out (a half-space is linear) the law is U = E* L δ² exp(−m) with m a function of X = ln(ρδ/L²) and
-ln ρ. Along X it is a quintic spline; across the radii of the table, a polynomial through a few Chebyshev nodes (one
-node when there is one radius). Load and stiffness are exact derivatives of U at a held radius.
-
-Beyond the table m goes on as a straight line: a power law, which is what a crowned contact tends to at light load
-(point contact, F ∝ δ^1.5, m' = −1/2).
+m is a quintic spline along X = ln(ρδ/L²), a polynomial through Chebyshev nodes of ln ρ, and beyond the table straight, a power
+law: crowned contacts at light load are points, F ∝ δ^1.5, m' = −1/2. Load and stiffness are derivatives of U at a held radius.
 """
 
 from __future__ import annotations
@@ -51,11 +46,7 @@ def solve_profiled_patch(
     half_width: float | None = None,
     start: PatchSolution | None = None,
 ) -> PatchSolution:
-    """Return the contact of a profiled cylinder at the approach δ at mid-width, on a quarter grid over the overlapping length.
-
-    The effective radius and the approach are in mm, E* in MPa; `cells`, `half_width` and `start` as in
-    `ltca.contact.pressure_cells.solve_cylinder_patch`.
-    """
+    """Return the contact of a profiled cylinder at δ, mm, on a grid over the overlapping length, as `solve_cylinder_patch`."""
     reach = profile.overlap_half_length(approach)
     slenderness = 2.0 * reach / float(np.sqrt(effective_radius * approach))
     # Ends of the body that still carry want the grading of unrelieved ends; the blend keeps the table smooth.
@@ -80,9 +71,7 @@ class RadiusRangeError(CycloError):
 
 @dataclass(frozen=True, slots=True)
 class ProfiledTable:
-    """Piece coefficients over X, shape (radii, 6, pieces), of m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) at mid-width, at Chebyshev
-    nodes of ln ρ between two radii in mm.
-    """
+    """Pieces over X of m, ln(p √ρ/(E* √δ)) and ln(b/√(ρδ)) at nodes of ln ρ, shape (radii, 6, pieces)."""
 
     smallest_radius: float
     largest_radius: float
@@ -96,17 +85,9 @@ class ProfiledTable:
 
 @cache
 def profiled_table(
-    profile: Relief,
-    smallest_radius: float,
-    largest_radius: float,
-    cells: int = _CELLS,
-    nodes: int = _NODES,
+    profile: Relief, smallest_radius: float, largest_radius: float, cells: int = _CELLS, nodes: int = _NODES
 ) -> ProfiledTable:
-    """Tabulate a profiled line contact for a range of effective radii, mm (cached in the process).
-
-    The bounds are equal for a single radius. `cells` are those over the half-width and the half-length on the finer of two
-    grids, `nodes` those in X, from λ = L/√(ρδ) = 20000 to 2. Radii that are not positive and in order are refused (ValueError).
-    """
+    """Tabulate a profiled line contact for effective radii between two, mm, kept in the process."""
     if not 0.0 < smallest_radius <= largest_radius:
         raise ValueError(f"need 0 < smallest_radius <= largest_radius, got {smallest_radius}, {largest_radius}")
     low, high = np.log(smallest_radius), np.log(largest_radius)
@@ -152,10 +133,7 @@ def _lagrange_weights(nodes: FloatArray, at: FloatArray) -> list[Any]:
 
 @dataclass(frozen=True, slots=True)
 class ProfiledLineContactLaw(ContactLaw):
-    """Load, stiffness, energy, pressure and half-width of profiled cylinders; zeros where open.
-
-    Radii outside the range of the table are refused (`RadiusRangeError`). `contact_modulus` is E*, MPa.
-    """
+    """Profiled cylinders of a modulus E*, MPa; radii outside the range of the table are refused (`RadiusRangeError`)."""
 
     profile: Relief
     contact_modulus: float
@@ -193,9 +171,7 @@ class ProfiledLineContactLaw(ContactLaw):
     def _at(
         self, pieces: FloatArray, approach: ArrayLike, effective_radius: ArrayLike
     ) -> tuple[FloatArray, FloatArray, tuple[FloatArray, FloatArray, FloatArray]]:
-        """Approach (zero where open), radius, and a curve with slope and curvature in X (anything where open); straight beyond
-        the table.
-        """
+        """Approach, zero where open, radius, and a curve with slope and curvature in X, straight beyond the table."""
         delta, radius = np.broadcast_arrays(
             np.asarray(approach, dtype=float), np.asarray(effective_radius, dtype=float)
         )
@@ -224,11 +200,7 @@ class ProfiledLineContactLaw(ContactLaw):
         # The curvature decays within about one unit of X, so the load stays continuously differentiable.
         fade = np.exp(-np.abs(beyond))
         run = np.abs(beyond) - 1.0 + fade
-        curve = (
-            value + first * beyond + second * run,
-            first + second * np.sign(beyond) * (1.0 - fade),
-            second * fade,
-        )
+        curve = (value + first * beyond + second * run, first + second * np.sign(beyond) * (1.0 - fade), second * fade)
         return np.where(closed, delta, 0.0), radius, curve
 
 
@@ -241,11 +213,7 @@ def law_for_profile(
     effective_radii: FloatArray,
     on_ladder: bool = False,
 ) -> ContactLaw:
-    """Return the tabulated law of a roller or pin of a length and radius in mm and a contact modulus E* in MPa.
-
-    Of `effective_radii`, mm, at which the law will be evaluated, only the range matters, and only for profiled parts; it is
-    rounded outward to powers of `LADDER_RATIO` if `on_ladder`, so that parts that differ little have the same table.
-    """
+    """Return the law of a roller or pin, mm and MPa, for the range of `effective_radii`, outward to a ladder if asked."""
     generator = generator_profile(profile, length, radius)
     if generator is None:
         return LineContactLaw(length, contact_modulus)

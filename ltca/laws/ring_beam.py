@@ -1,21 +1,7 @@
-r"""The ring of the pin wheel as a curved beam: displacements of the pin seats under unit forces at the seats.
+"""The ring of the pin wheel as a curved beam: displacements of the pin seats under unit forces at the seats.
 
-Sections stay plane (Winkler's curved beam with Timoshenko's shear; shear coefficient of a rectangle by Cowper 1966). With the
-displacements :math:`u_r, u_t` of the neutral radius :math:`r_n = h / \ln(r_o/r_i)` and the rotation :math:`\theta` of the
-section the energy is
-
-.. math:: \frac{b}{2} \oint \left[ E L (u_r + u_t')^2 + E h (R_c - r_n) \theta'^2 + \kappa G L (u_r' - u_t + r_n \theta)^2
-          \right] d\varphi, \qquad L = \ln(r_o/r_i),
-
-with the mean radius :math:`R_c`: about the neutral radius stretching and bending do not mix. A seat at the radius
-:math:`R = r_n + l` moves by :math:`u_t + l \theta`, so that its force has the moment l about the neutral radius. Each order of
-a Fourier series has a 3 × 3 matrix; orders are summed to the end: what the first hundreds leave out falls like :math:`n^{-5}`
-because the first three terms of the series in 1/n are summed in closed form (Bernoulli polynomials).
-
-A free ring is determined up to rigid motions. Its displacements are those beyond the rigid motion that fits the seats best
-(least squares), and forces act on it without their part dual to rigid motions, which the wheel as a whole carries. Bolts are
-springs between the ring and a rigid housing. Where the outer face is held, sections turn about it: only shear and bending of
-the wall are left.
+Winkler's curved beam with shear about its neutral radius, in a Fourier series whose orders have 3 × 3 matrices in (u_r, u_t, θ);
+the first three terms in 1/n are summed in closed form, so that the rest falls like n⁻⁵. Energy and supports: docs/theory/ring.md.
 """
 
 from __future__ import annotations
@@ -53,22 +39,8 @@ class RingBeam:
         return self.height / self._wall
 
     def free(self, seats: FloatArray, radius: float) -> FloatArray:
-        """Return displacements of seats of a free ring beyond their rigid motion under unit forces there, mm/N.
+        """Return displacements of seats beyond their rigid motion by unit forces there, mm/N, shape (seats, 2, seats, 2).
 
-        Parameters
-        ----------
-        seats : array, shape (seats,)
-            Angles of the seats, rad.
-        radius : float
-            Of the circle on which the forces act, mm.
-
-        Returns
-        -------
-        array, shape (seats, 2, seats, 2)
-            By seat and component (x, y) of displacement and force; symmetric.
-
-        Examples
-        --------
         Opposite forces stretch a thin ring by (π/4 − 2/π) F R³/EI:
 
         >>> ring = RingBeam(inner_radius=99.9, outer_radius=100.1, width=10.0, youngs_modulus=2e5, poisson_ratio=0.0)
@@ -190,11 +162,7 @@ def rigid_motions(angles: FloatArray, radius: FloatArray | float) -> FloatArray:
 
 
 def on_bolts(among: FloatArray, modes: FloatArray, seats: int, stiffness: float) -> FloatArray:
-    """Return the flexibility of a ring on bolts at its seats, shape (seats, 2, seats, 2).
-
-    `among` is that of the free ring at seats, then bolts, without rigid motions, and `modes` are their displacements by those;
-    rows are places by component. Bolts have a stiffness in N/mm.
-    """
+    """Return the flexibility at the seats of a ring on bolts from that of the free one at seats, then bolts, and rigid modes."""
     count = 2 * seats
     bolts = len(among) - count
     # Forces t of the bolts on the ring and its rigid motion g: the bolts yield by −t/k, all forces balance.
@@ -221,11 +189,7 @@ def _axes(angles: FloatArray) -> FloatArray:
 
 
 def beam_flexibility(drive: Drive) -> FloatArray | None:
-    """Return displacements of the seats of the wheel pins of a drive under unit forces there; None where the ring is rigid.
-
-    Shape (z_P, 2, z_P, 2) by seat and component in the wheel, mm/N. Forces act at the centres of the seats, evenly spaced:
-    errors of single seats are far too small to matter here.
-    """
+    """Return displacements of evenly spaced seats by unit forces at their centres, mm/N, (z_P, 2, z_P, 2); None where rigid."""
     ring, wheel = drive.ring, drive.pin_wheel
     if ring is None:
         return None

@@ -14,17 +14,12 @@ from ltca.laws.sliced_contact import EXACT, Exactness, SlicedContact, rows_of, s
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeparateSlices:
-    """Law of contacts whose slices follow a law of the plane, each by its own approach.
+    """Law of contacts whose slices follow a law of the plane, each by its own approach: plane strain, springs, seats."""
 
-    Plane strain is the near field of coefficients of finite elements, springs are what shaft pins do in the paper's model, and a
-    conforming seat is what loose pins and sleeves stand in. `law` is that of the whole length in mm; `relief`, shape (slices,
-    points), by how much lead and profile fall short at the points (`ltca.laws.sliced_contact.slice_heights`), mm.
-    """
-
-    law: ContactLaw
-    length: float
+    law: ContactLaw  # of the whole length
+    length: float  # mm
     slices: int
-    relief: FloatArray = by_drive(2)
+    relief: FloatArray = by_drive(2)  # of lead and profile at the points (`slice_heights`), mm, shape (slices, points)
 
     def respond(
         self,

@@ -1,9 +1,7 @@
-"""Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, fast to evaluate.
+"""Smooth curves over the slenderness of a line contact: quintic splines on uniform knots, four times differentiable.
 
-Quintic pieces joined four times differentiably, which scipy computes, make loads and stiffnesses derived from them smooth. The
-laws of `ltca.laws.line_contact` are evaluated for every contact in every iteration: here one multiplication locates the piece,
-and value, slope and curvature are summed together by Horner's rule, which for the 4680 contacts of a usual batch takes about
-half the time of scipy's evaluation, which searches the knots.
+Laws are evaluated for every contact in every iteration: locating pieces by one product and Horner's rule for value, slope and
+curvature together take half the time of scipy's evaluation, which makes the splines.
 """
 
 from __future__ import annotations
@@ -19,16 +17,9 @@ _DEGREE = 5
 
 
 def quintic_spline_pieces(values: FloatArray) -> FloatArray:
-    """Return piece coefficients of the quintic spline through values at uniform knots, at least 8 (ValueError), shape (6, n − 1).
+    """Return the coefficients, powers 0 … 5 of 0 … 1, of the not-a-knot quintic spline through uniform knots, (6, n − 1).
 
-    They are those of the powers 0 … 5 of the local coordinate 0 … 1. Four not-a-knot conditions (no jump of the fifth
-    derivative at the two knots next to each end) make it reproduce polynomials up to degree five.
-
-    Examples
-    --------
-    >>> knots = np.arange(9.0)
-    >>> pieces = quintic_spline_pieces(knots**4)
-    >>> bool(np.isclose(pieces[:, 2].sum(), 81.0))
+    >>> bool(np.isclose(quintic_spline_pieces(np.arange(9.0) ** 4)[:, 2].sum(), 81.0))
     True
     """
     from scipy.interpolate import make_interp_spline  # 0.2 s to import, for curves that are not read from a file
@@ -43,14 +34,10 @@ def quintic_spline_pieces(values: FloatArray) -> FloatArray:
 
 
 def quintic_hermite_pieces(values: FloatArray, slopes: FloatArray) -> FloatArray:
-    """Return piece coefficients of the quintic spline with given values and slopes at uniform knots, as `quintic_spline_pieces`.
+    """Return the coefficients of the quintic spline with values and slopes (by knot distance) at uniform knots, n ≥ 4.
 
-    Slopes are per unit of the local coordinate (slope times knot distance); n ≥ 4. Three times continuously differentiable,
-    with no curvature at the first knot and a continuous fourth derivative at the last knot but one. Twice the data of
-    `quintic_spline_pieces` per knot: for curves that bend within few knots.
+    Three times continuously differentiable, without curvature at the first knot: for curves that bend within few knots.
 
-    Examples
-    --------
     >>> knots = np.arange(6.0)
     >>> pieces = quintic_hermite_pieces(knots**4, 4.0 * knots**3)
     >>> bool(np.isclose(np.polyval(pieces[::-1, 2], 0.5), 2.5**4))
@@ -80,26 +67,15 @@ def quintic(coefficients: FloatArray, t: FloatArray) -> tuple[FloatArray, FloatA
 
 @dataclass(frozen=True, slots=True)
 class SlendernessCurve:
-    """Smooth positive curve over X = ln(ρδ/L²), continued beyond its knots on both sides with value, slope and curvature.
+    """Smooth positive curve over X = ln(ρδ/L²), continued beyond its knots with value, slope and curvature.
 
-    Toward X → −∞ (very long or light contacts) it continues as ``a + b t + c ln(1 + t/T)``, the form of the logarithmic
-    approach of slender contacts, with the limiting slope b known and T from the curvature; toward X → ∞ as the exponential of
-    an almost linear function.
-
-    Parameters
-    ----------
-    start, spacing : float
-        First knot and distance of the knots.
-    coefficients : ndarray, shape (6, pieces)
-        Powers 0 … 5 of the local coordinate 0 … 1.
-    light_slope : float
-        Limit of −d/dX for X → −∞.
+    Toward X → −∞ as a + b t + c ln(1 + t/T), as slender contacts approach; toward ∞ as the exponential of nearly a line.
     """
 
-    start: float
-    spacing: float
-    coefficients: FloatArray
-    light_slope: float
+    start: float  # first knot
+    spacing: float  # of the knots
+    coefficients: FloatArray  # powers 0 … 5 of the local coordinate 0 … 1, shape (6, pieces)
+    light_slope: float  # limit of −d/dX for X → −∞
 
     def value(self, x: FloatArray) -> FloatArray:
         """Value at ``x``, any shape."""

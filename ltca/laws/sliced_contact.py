@@ -50,10 +50,7 @@ def slice_means(values: FloatArray) -> FloatArray:
 
 
 def rows_of(relief: FloatArray, places: Any) -> FloatArray:
-    """Return the reliefs of some contacts by their places, shape (contacts, slices, points); one that all share as it is.
-
-    `places` index contacts, of which the first axis tells the drive: a mask, or a tuple of arrays of numbers.
-    """
+    """Return the reliefs of some contacts, by a mask or arrays of numbers; one that all share as it is."""
     if relief.ndim == 2:
         return relief
     return relief[places[0] if isinstance(places, tuple) else np.nonzero(places)[0]]
@@ -69,33 +66,17 @@ def _sums(length: float, slices: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedContact:
-    """Contacts in slices at some approaches and tilts, zero where open.
+    """Contacts in slices at some approaches and tilts, zero where open, shape (…)."""
 
-    Attributes
-    ----------
-    load, moment : array, shape (…)
-        Σ F and Σ ∫ q z dz, N and N·mm: moments turn positive z into the other body.
-    by_approach, by_tilt, moment_by_tilt : array, shape (…)
-        ∂F/∂δ, ∂F/∂θ = ∂M/∂δ and ∂M/∂θ, N/mm, N/rad and N·mm/rad.
-    slice_load : array, shape (…, slices)
-        F_i, N.
-    line_load : array, shape (…, slices, points)
-        q at the points of the slices, N/mm.
-    near : array, shape (…, 2 + 3 slices) or (…, 0)
-        δ, θ, F_i, ∂F_i/∂δ and ∂F_i/∂θ: what a neighbour starts from (`loads_nearby`); nothing where no start is needed.
-    left : array, shape (…)
-        Force that may be left over of the slices, N; zero of laws that leave none.
-    """
-
-    load: FloatArray
-    moment: FloatArray
-    by_approach: FloatArray
-    by_tilt: FloatArray
-    moment_by_tilt: FloatArray
-    slice_load: FloatArray
-    line_load: FloatArray
-    near: FloatArray
-    left: FloatArray
+    load: FloatArray  # Σ F, N
+    moment: FloatArray  # Σ ∫ q z dz, N·mm: turns positive z into the other body
+    by_approach: FloatArray  # ∂F/∂δ, N/mm
+    by_tilt: FloatArray  # ∂F/∂θ = ∂M/∂δ, N/rad
+    moment_by_tilt: FloatArray  # ∂M/∂θ, N·mm/rad
+    slice_load: FloatArray  # F_i, N, shape (…, slices)
+    line_load: FloatArray  # q at the points of the slices, N/mm, shape (…, slices, points)
+    near: FloatArray  # δ, θ, F_i, ∂F_i/∂δ, ∂F_i/∂θ for `loads_nearby`, shape (…, 2 + 3 slices); or nothing, (…, 0)
+    left: FloatArray  # force that may be left over of the slices, N
 
     @classmethod
     def open(cls, contacts: int, slices: int) -> SlicedContact:
@@ -122,9 +103,7 @@ class SlicedContact:
     def of_separate(
         cls, approach: FloatArray, tilt: FloatArray, line_load: FloatArray, line_slope: FloatArray, length: float
     ) -> SlicedContact:
-        """Return contacts whose slices do not feel each other, from the line load of their points, N/mm, and its derivative by
-        the approach of the point, N/mm², shape (…, slices, points).
-        """
+        """Return contacts of separate slices from line loads, N/mm, and derivatives, N/mm², (…, slices, points)."""
         shape, slices = line_load.shape[:-2], line_load.shape[-2]
         sums = _sums(length, slices)
         carried = line_load.reshape(-1, slices * POINTS) @ sums[:, : slices + 1]
@@ -153,9 +132,7 @@ class SlicedContact:
     def moved(
         self, approach: FloatArray, tilt: FloatArray, load: FloatArray, half: FloatArray | float
     ) -> SlicedContact:
-        """Return contacts that approach and tilt by a little more, mm and rad, and carry these loads and moments by `half`,
-        shape (positions, 2, contacts): their slices follow their slopes.
-        """
+        """Return contacts moved along the slopes of their slices, with loads and moments by `half`, (positions, 2, contacts)."""
         force, moment = load[:, 0], load[:, 1] * half
         if not self.near.shape[-1]:
             return replace(self, load=force, moment=moment)
@@ -178,10 +155,7 @@ def _parts(near: FloatArray) -> list[FloatArray]:
 
 
 def loads_nearby(near: FloatArray, approach: FloatArray, tilt: FloatArray) -> FloatArray:
-    """Return loads of slices to start from at approaches and tilts, N, shape (contacts, slices).
-
-    `near` are rows of `SlicedContact.near`; slopes tell nothing beyond a change of the loads themselves.
-    """
+    """Return loads of slices, N, (contacts, slices), from `near` ones, along their slopes where the change is small."""
     at, leaned, load, by_approach, by_tilt = _parts(near)
     moved = (approach[:, None] - at) * by_approach + (tilt[:, None] - leaned) * by_tilt
     trusted = (np.abs(moved) < LARGEST_EXTRAPOLATION * load.max(axis=1, keepdims=True)).all(axis=1, keepdims=True)

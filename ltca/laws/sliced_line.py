@@ -1,29 +1,8 @@
-r"""Line contacts in slices along their width: load and moment by approach and tilt, for any lead and profile.
+"""Line contacts in slices along their width, of any lead and profile: load and moment by approach and tilt.
 
-A line of the length L is cut into n slices of the length l = L/n. Slice i carries F_i, evenly along l. Its surfaces approach by
-:math:`\delta + \theta z - h(z)` at the height z, less :math:`u_i(F)`, what all slices press in together beyond what the slice
-does as plane strain counts it:
-
-.. math::
-    F_i = \int_l q(\delta + \theta z - h(z) - u_i)\,dz, \qquad
-    u_i = \frac{\partial V}{\partial F_i}, \qquad
-    V = \frac{1}{2 \pi E^* l} \sum_{ij} a_{|i-j|}(b/l) F_i F_j .
-
-q is the line load of plane strain with the datum D (`ltca.laws.plane_strain`), :math:`\delta = (2 q/\pi E^*)(\ln(2D/b) + 1/2)`
-with the half-width b of the line load itself; a lag's coefficient :math:`a_k` is the integral of Boussinesq's kernel over two
-strips l long and as wide as the contact of the mean line load (Love; `ltca.contact.influence`), and of a slice on itself less
-what q counts of it. Strips are as wide as makes their own energy that of the semi-elliptic pressure. The mean line load
-:math:`\sum F^2/(l \sum F)` moves with the loads, and V knows it: loads, moment and energy belong to one potential,
-
-.. math:: E = \sum \int \varphi(\delta + \theta z - h - u_i)\,dz + \sum F_i u_i - V, \qquad \varphi' = q .
-
-Slices are integrated at `POINTS` points each, so that a contact that ends within a slice moves on smoothly. Where the ends of
-the line carry, pressure bulges there within some half-widths: the end slices are softer in V by :math:`\varepsilon_n(b/l)`,
-tabulated for every n so that an aligned straight line has the load of `ltca.laws.line_contact`. A line of one slice is that law
-itself and not made here. ``docs/theory/width.md`` has the sources and the measured errors.
-
-Newton's method on the loads squares what is left over: its last step is taken along the slopes without another evaluation, to
-round-off.
+Slice i, l = L/n long, carries F_i = ∫ q(δ + θ z − h(z) − u_i) dz, u_i = ∂V/∂F_i, V = Σ a_|i−j|(b/l) F_i F_j/(2π E* l), with q of
+plane strain, Love's a_k of strips less what q has, and b of the mean line load Σ F²/(l Σ F); end slices are softer by ε_n(b/l),
+tabulated for the load of an aligned line (docs/theory/width.md). Newton's last step is taken along the slopes, to round-off.
 """
 
 from __future__ import annotations
@@ -58,8 +37,7 @@ from ltca.laws.sliced_contact import (
 )
 
 STRIP = float(np.exp(1.25 - np.log(4.0)))
-"""Half-width of an evenly pressed strip by that of a semi-elliptic one of the same energy: ⟨−ln|x − x′|⟩ = 3/2 − ln 2b of the
-strip, 1/4 − ln(b/2) of the semi-ellipse."""
+"""Half-width of an evenly pressed strip by that of a semi-elliptic one of the same energy, 3/2 − ln 2b against 1/4 − ln(b/2)."""
 DATUM = 4.0
 """Datum of the plane law by the length of the line; what it is makes no difference but to slices that carry unevenly."""
 SLEEVE_DATUM = 0.685
@@ -102,10 +80,7 @@ def _strips(slices: int) -> FloatArray:
 
 @cache
 def _images(slices: int, reach: float) -> FloatArray:
-    """What strips feel of the images of others in both end planes at the knots, shape (slices, knots).
-
-    The planes stand `reach` half-lengths from the middle. Strips i and j have the coefficient of the lag |i − (n − 1 − j)|.
-    """
+    """Coefficients of strips with images in both end planes, `reach` half-lengths from the middle, (slices, knots)."""
     edges, widths = np.arange(slices + 1.0) - 0.5 * slices, 2.0 * STRIP * np.exp(places())
     planes = 0.5 * slices * reach
     return np.array([end_images(width, edges, planes)[0, ::-1] / width**2 for width in widths.tolist()]).T
@@ -113,11 +88,7 @@ def _images(slices: int, reach: float) -> FloatArray:
 
 @cache
 def _pieces(slices: int, free_ends: tuple[FreeEnds, ...]) -> FloatArray:
-    """Pieces of a_k, ε and, where ends are free, those of images, shape (6, curves, pieces).
-
-    Images with the weight 1 at the very end leave nothing of the bulge there, and others a part of it; what even slices miss
-    of its energy goes with the square. Where bodies reach beyond, images count by what the end slice feels of its own.
-    """
+    """Pieces of a_k, ε and, where ends are free, those of images, shape (6, curves, pieces)."""
     ends, images = softer_ends(slices), np.empty((0, _KNOTS))
     if free_ends:
         images = np.sum([each.weight * _images(slices, each.reach) for each in free_ends], axis=0)
@@ -143,34 +114,24 @@ def _moments(length: float, slices: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SlicedLine:
-    """Law of line contacts of one length in slices.
+    """Law of line contacts of one length in slices."""
 
-    Attributes
-    ----------
-    length, contact_modulus : float
-        mm and E*, MPa.
-    slices : int
-        At least 3.
-    relief : array, shape (slices, points)
-        h, mm: by how much lead and profile fall short at the points (`slice_heights`).
-    sleeve : float
-        Part of the compliance that is a sleeve's, whose slices do not feel each other: its wall is thinner than they are long.
-    overlap : float
-        Compliance of the whole line that the law of that sleeve has as well, mm/N (`ltca.laws.backed.BackedLaw`).
-    ends : array, shape (6, pieces), optional
-        By how much end slices are softer, ε over ln(b/l); default `softer_ends` of as many slices, less where ends are free.
-    free_ends : tuple of FreeEnds
-        Of the bodies that end at the line's ends or beyond them; half-spaces where there are none.
-    """
+    length: float  # L, mm
+    contact_modulus: float  # E*, MPa
+    slices: int  # at least 3
+    relief: FloatArray = by_drive(2)  # h of lead and profile at the points (`slice_heights`), mm, (slices, points)
+    sleeve: float = 0.0  # part of the compliance that is a sleeve's, whose slices do not feel each other
+    overlap: float = 0.0  # compliance of the line that the sleeve's law has as well, mm/N (`BackedLaw`)
+    ends: FloatArray | None = None  # ε over ln(b/l), shape (6, pieces); default `softer_ends`
+    free_ends: tuple[FreeEnds, ...] = ()  # of bodies that end at the line's ends or beyond
 
-    length: float
-    contact_modulus: float
-    slices: int
-    relief: FloatArray = by_drive(2)
-    sleeve: float = 0.0
-    overlap: float = 0.0
-    ends: FloatArray | None = None
-    free_ends: tuple[FreeEnds, ...] = ()
+    @classmethod
+    def straight(
+        cls, length: float, contact_modulus: float, slices: int, free_ends: tuple[FreeEnds, ...] = ()
+    ) -> SlicedLine:
+        """Return the law of lines without lead or profile."""
+        relief = np.zeros((slices, POINTS))
+        return cls(length=length, contact_modulus=contact_modulus, slices=slices, relief=relief, free_ends=free_ends)
 
     def respond(
         self,
@@ -180,22 +141,7 @@ class SlicedLine:
         start: FloatArray | None = None,
         exactness: Exactness = EXACT,
     ) -> SlicedContact:
-        """Return loads, moments and their derivatives.
-
-        Parameters
-        ----------
-        approach, tilt, effective_radius : array, shape (…)
-            δ in the middle, mm; θ, rad, positive presses positive z; ρ, mm.
-        start : array, shape (…, 2 + 3 slices), optional
-            What the same contacts were nearby (`SlicedContact.near`).
-        exactness : Exactness
-            How close to balance the slices come.
-
-        Raises
-        ------
-        ConvergenceError
-            When loads do not settle.
-        """
+        """Return loads, moments and derivatives at δ in the middle, mm, θ, rad, and ρ, mm, from a neighbour's `near` as start."""
         given = (np.asarray(each, dtype=float) for each in (approach, tilt, effective_radius))
         delta, theta, radius = np.broadcast_arrays(*given)
         shape, z, n = delta.shape, slice_heights(self.length, self.slices), self.slices
@@ -282,10 +228,7 @@ class SlicedLine:
     def _counted_twice(
         self, load: FloatArray, effective_radius: FloatArray
     ) -> tuple[FloatArray | float, FloatArray | float]:
-        """What is subtracted from what each slice presses in, smoothly bounded, and its derivative by the load.
-
-        The bound is a part of the approach of a plane as deep as a half-space of the line's length counts, at the line load.
-        """
+        """Smoothly bounded part to subtract of what each slice presses in, and its derivative by the load."""
         if not self.overlap:
             return 0.0, 0.0
         force = np.maximum(load, 1e-300)
@@ -298,9 +241,7 @@ class SlicedLine:
         return bounded * force, bounded * (1.0 - narrow)
 
     def _matrix(self, place: FloatArray) -> FloatArray:
-        """Coefficients of slices on slices at a held ln(b/l), with two derivatives by it, mm/N, shape (3, slices, slices,
-        contacts).
-        """
+        """Coefficients of slices on slices at ln(b/l), with two derivatives by it, mm/N, (3, slices, slices, contacts)."""
         n, curves, lag = self.slices, self._curves(place), _between(self.slices)
         curves[:, :n] *= 1.0 - self.sleeve
         curves[0, 0] -= 2.0 * ((1.0 - self.sleeve) * np.log(DATUM * n) + self.sleeve * np.log(DATUM / SLEEVE_DATUM))
@@ -353,10 +294,7 @@ class SlicedLine:
         load: FloatArray,
         exactness: Exactness,
     ) -> None:
-        """Put what some contacts carry by approaches of their points, something pressed together, contacts last.
-
-        `load` are those of the slices to start from, zeros where nothing is known.
-        """
+        """Put contacts by the free approaches of their points, contacts last; `load` of slices to start from, 0 where unknown."""
         datum, moments = DATUM * self.length, _moments(self.length, self.slices)
         unknown = ~(load.sum(axis=0) > 0.0)
         if unknown.any():
@@ -427,9 +365,7 @@ def _carried(
     own: FloatArray,
     left: FloatArray,
 ) -> SlicedContact:
-    """What settled contacts carry, contacts last: by the tilt points of a slice approach alike but for their heights, as its
-    load follows.
-    """
+    """Settled contacts, contacts last: by the tilt, points of a slice approach alike but for their heights, as its load does."""
     load, moment = np.matmul(moments[:, :2], line).swapaxes(0, 1)
     by_approach, by_tilt = moved.swapaxes(0, 1)
     inverse = np.divide(1.0, stiff, out=np.zeros(stiff.shape), where=stiff > 0.0)
@@ -447,11 +383,7 @@ def _carried(
 
 
 def _solved(by_load: FloatArray, stiff: FloatArray, right: FloatArray) -> FloatArray:
-    """Solve (1 + A K) x = b for many small A and diagonal K at once, contacts last, by elimination without pivoting.
-
-    A is positive definite and K positive, so that all pivots are above one. Solvers for stacks of matrices take them first and
-    would have every array copied there and back.
-    """
+    """Solve (1 + A K) x = b, A positive definite, K > 0 diagonal, contacts last, by elimination: pivots are above one."""
     n = len(stiff)
     own = np.arange(n)
     system = np.concatenate((by_load * stiff[:, None], right), axis=1)

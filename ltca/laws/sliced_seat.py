@@ -1,14 +1,8 @@
-r"""Contacts in slices in series with the seats of loose pins and sleeves.
+"""Contacts in slices in series with the seats of loose pins and sleeves, plane laws at every height (`ltca.laws.conforming`).
 
-A loose pin, or a sleeve, stands between the flank (or the hole) and its seat. It travels into the seat by s and leans into it by
-:math:`\psi`, so that the contact outside approaches by :math:`\delta - s` and tilts by :math:`\theta - \psi`. s and
-:math:`\psi` are where the energy of both is least: forces and moments of both are equal. A seat is the plane law
-(`ltca.laws.conforming`) at every height: slices of it do not feel each other. Across the line of load a loose part aligns itself
-with its seat.
-
-That energy is convex in place and lean but for a little geometry, and its slopes are what is left of forces and moments. A step
-is shortened where the energy rises again steeply at its end: the slope along the step says so, also where differences of
-energies are round-off.
+The part travels into its seat by s and leans by ψ, where the energy of contact (δ − s, θ − ψ) and seat is least; across the line
+of load it aligns itself. The energy is nearly convex: a step is shortened where its slope along the step rises again steeply,
+which tells also where differences of energies are round-off.
 """
 
 from __future__ import annotations
@@ -39,10 +33,9 @@ MAX_TRIALS = 16
 STEEPEST = 0.5
 """Largest slope of the energy at the end of a step, by that at its start, that is not shortened."""
 LEAST_TURNING = 1e-9
-"""Stiffness against leaning by that of the place times the square of half the length: what touches at one end alone turns about
-that end freely."""
+"""Stiffness against leaning by that of the place and half the length squared: what touches at one end turns freely about it."""
 DAMPING = 1e-6
-"""The same of a step: what is left over of what turns freely must not send it far."""
+"""The same of a step: a residual of free turning must not send it far."""
 MAX_ITERATIONS = 60
 _LIGHTEST, _HEAVIEST, _KNOTS = -40.0, 20.0, 601
 
@@ -54,14 +47,10 @@ Outside = Callable[[NDArray[np.intp], FloatArray, FloatArray | None], SlicedCont
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeatLaw(ContactLaw):
-    """Load of conforming seats by their travel, with the play of each, mm, in the place of an effective radius.
-
-    `curve` has the pieces, shape (6, pieces), of the level of the approach over the logarithm of the travel, both by what makes
-    them the same for every play.
-    """
+    """Load of conforming seats by their travel, with the play of each, mm, in the place of an effective radius."""
 
     law: ConformingLaw
-    curve: FloatArray
+    curve: FloatArray  # pieces of the level of the approach over ln(travel), alike for every play, shape (6, pieces)
 
     @classmethod
     def of_law(cls, law: ConformingLaw) -> SeatLaw:
@@ -114,10 +103,7 @@ class SlicedSeat(SeparateSlices):
         return cls(law=SeatLaw.of_law(law), length=law.length, slices=slices, relief=relief)
 
     def heaviest(self, load: FloatArray, moment: FloatArray, play: FloatArray) -> FloatArray:
-        """Return the load of the whole width at the line load of the most loaded end of seats, N, from their loads and moments.
-
-        Arrays have the shape (contacts,), N and N·mm; loads are positive. ConvergenceError where no line of travel carries these.
-        """
+        """Return the load of the width at the line load of the more loaded end, N, by loads and moments, N, N·mm, (contacts,)."""
         travel, lean = self.under(load, moment, play)
         return self.law.load_and_stiffness(travel + 0.5 * self.length * np.abs(lean), play)[0]
 
@@ -175,9 +161,7 @@ class SlicedSeat(SeparateSlices):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BackedLine:
-    """Contacts in slices of one kind in series with the seats of their pins or sleeves, of a radial play in mm, shape (pairs,)
-    or (positions, pairs).
-    """
+    """Contacts in slices in series with seats of a radial play, mm, shape (pairs,) or (positions, pairs)."""
 
     contact: SlicedLine | SeparateSlices
     seat: SlicedSeat
@@ -191,10 +175,7 @@ class BackedLine:
         start: FloatArray | None = None,
         exactness: Exactness = EXACT,
     ) -> SlicedContact:
-        """Return loads, moments and their derivatives of contact and seat, as `ltca.laws.sliced_line.SlicedLine.respond`.
-
-        Loads of the slices are those of the contact outside. Balance is found to round-off, whatever would do.
-        """
+        """Return loads, moments and derivatives of contact and seat as `SlicedLine.respond`; balanced to round-off always."""
         return self.solve(approach, tilt, effective_radius, start)[0]
 
     def solve(
@@ -304,10 +285,7 @@ def _in_series(contact: SlicedContact, seat: SlicedContact, half: float) -> Slic
 
 
 def newton_step(left: FloatArray, stiffness: FloatArray, half: float) -> tuple[FloatArray, FloatArray]:
-    """Return Newton's step of travel, mm, and lean, rad, shape (parts, 2), and the slope of the energy along it, N·mm.
-
-    `left` and `stiffness` are the slopes of the energy and its second derivatives, `half` is half the length of the contacts, mm.
-    """
+    """Return Newton's step of travel, mm, and lean, rad, (parts, 2), and the slope of the energy, N·mm; `half` the length."""
     step = -np.linalg.solve(_invertible(stiffness, DAMPING * half**2), left[..., None])[..., 0]
     return np.asarray(step), np.asarray((left * step).sum(axis=1))
 
@@ -315,11 +293,7 @@ def newton_step(left: FloatArray, stiffness: FloatArray, half: float) -> tuple[F
 def shorten_steps(
     slope: FloatArray, move: Callable[[NDArray[np.intp], FloatArray], tuple[FloatArray, FloatArray]]
 ) -> FloatArray:
-    """Return which parts of steps are taken: the whole, or where the slope of the energy along them has nearly gone.
-
-    `slope` is that where they start, N·mm. `move` takes some of the steps, by their numbers, to parts of them and returns slope
-    and second derivative of the energy there; every step is left where it was taken last.
-    """
+    """Return the parts of steps taken: the whole, or to where the slope of the energy, which `move` returns, has nearly gone."""
     fraction, low, high = np.ones(slope.size), np.zeros(slope.size), np.full(slope.size, np.inf)
     steep, rows = STEEPEST * np.abs(slope), np.arange(slope.size)
     for trial in range(MAX_TRIALS):

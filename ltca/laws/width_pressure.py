@@ -1,10 +1,7 @@
 """Pressures of contacts along their width: over the heights, the largest anywhere with its place, and at the ends.
 
-`estimate_along_width` takes the pressure of a long line under each line load, :math:`p = E^* b/(2\\rho)`, and at the ends that
-carry the ratio of an aligned end to its line (`ltca.contact.end_pressure`). `PatchAlongWidth` reads the half-space grid of a
-contact at its approach and tilt, ends included (`validation.methods.grid_pressures` solves them for all contacts).
-
-At an unrelieved end the pressure of half-spaces is singular: as in the plane, pressures are means over a hundredth of the length.
+From slices the pressure is p = E* b/(2ρ) of each line load, at ends that carry times the ratio of aligned ends; else of grids.
+Pressures are means over a hundredth of the length, as that of half-spaces at an unrelieved end is singular.
 """
 
 from __future__ import annotations
@@ -20,7 +17,7 @@ from ltca.contact.end_pressure import find_cylinder_ratio
 from ltca.contact.free_end import FreeEnds, remaining_bulge
 from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchPressure
-from ltca.laws.sliced_contact import POINTS, slice_heights, slice_means
+from ltca.laws.sliced_contact import slice_heights, slice_means
 from ltca.laws.sliced_line import SlicedLine
 
 NODES = 61
@@ -33,39 +30,19 @@ _PEAK_BIAS = 0.114
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WidthPressures:
-    """Pressures along the width of contacts, zero where open.
+    """Pressures along the width of contacts, shape (…, heights), zero where open."""
 
-    Attributes
-    ----------
-    height : array, shape (heights,)
-        z above the middle of the width, mm.
-    line_load : array, shape (…, heights)
-        N/mm.
-    even_line_load : array, shape (…, heights)
-        The same without the bulge of ends that carry, N/mm; of grids the line load itself.
-    pressure : array, shape (…, heights)
-        Largest pressure over the profile at each height, MPa.
-    largest : array, shape (…)
-        Largest pressure anywhere, ends included, MPa.
-    place : array, shape (…)
-        Its height, mm.
-    end_load : array, shape (…, 2)
-        Line load at the lower and at the upper end of the width, N/mm: zero where the contact ends before.
-    """
-
-    height: FloatArray
-    line_load: FloatArray
-    even_line_load: FloatArray
-    pressure: FloatArray
-    largest: FloatArray
-    place: FloatArray
-    end_load: FloatArray
+    height: FloatArray  # z above the middle of the width, mm, shape (heights,)
+    line_load: FloatArray  # N/mm
+    even_line_load: FloatArray  # without the bulge of ends that carry; of grids the line load itself
+    pressure: FloatArray  # largest over the profile at each height, MPa
+    largest: FloatArray  # anywhere, ends included, MPa, shape (…)
+    place: FloatArray  # its height, mm, shape (…)
+    end_load: FloatArray  # line load at the lower and upper end, N/mm, shape (…, 2)
 
 
 def estimate_along_width(kind: ContactKind, line_load: FloatArray, effective_radius: FloatArray) -> WidthPressures:
-    """Return pressures of contacts in slices at the middles of the slices, from their line loads, N/mm, at the points of these,
-    shape (…, slices, points), and effective radii, mm, which broadcast to (…).
-    """
+    """Return pressures at the middles of slices from line loads, N/mm, (…, slices, points), and effective radii, mm, (…)."""
     line = line_load
     radius = np.broadcast_to(effective_radius, line.shape[:-2])
     z = slice_heights(kind.length, line.shape[-2])
@@ -174,8 +151,7 @@ def _peaks(pressure: FloatArray, symmetric: bool) -> FloatArray:
 @cache
 def _aligned_loads(slices: int, free_ends: tuple[FreeEnds, ...] = ()) -> tuple[FloatArray, FloatArray]:
     """ln(b/L) of the mean line load, and loads of the slices by their mean, of aligned straight lines, shape (nodes, slices)."""
-    relief = np.zeros((slices, POINTS))
-    line = SlicedLine(length=1.0, contact_modulus=1.0, slices=slices, relief=relief, free_ends=free_ends)
+    line = SlicedLine.straight(1.0, 1.0, slices, free_ends)
     # Up to lines four half-widths long, or slices a quarter of one.
     approach = np.geomspace(1e-8, min(1.0 / 16.0, 16.0 / slices**2), NODES)
     found = line.respond(approach, np.zeros(NODES), np.ones(NODES))
@@ -191,10 +167,7 @@ def _end_bulges(slices: int, free_ends: tuple[FreeEnds, ...] = ()) -> tuple[Floa
 
 
 def _bulges(kind: ContactKind, line_load: FloatArray, radius: FloatArray, carries: BoolArray) -> FloatArray:
-    """What slices of aligned straight lines of the same mean carry by the middle one, one towards ends that do not carry.
-
-    `line_load` are those of the slices, shape (…, slices), and `carries` says whether the lower and the upper end do.
-    """
+    """Load of slices of aligned lines of the same mean by the middle one; one towards ends that do not carry."""
     slices = line_load.shape[-1]
     nodes, shares = _aligned_loads(slices, kind.free_ends)
     mean = line_load.mean(axis=-1)

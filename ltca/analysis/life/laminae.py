@@ -182,12 +182,7 @@ class SolvedLaminae:
 
     def slice_shares(self, load: FloatArray, slices: int) -> FloatArray:
         """Return what the law of slices gives each of them, interpolated between loads."""
-        law = sliced.SlicedLine(
-            length=self.length,
-            contact_modulus=self.contact_modulus,
-            slices=slices,
-            relief=np.zeros_like(sliced.slice_heights(self.length, slices)),
-        )
+        law = sliced.SlicedLine.straight(self.length, self.contact_modulus, slices)
         rungs = self._height * APPROACH_RATIO ** np.array(RUNGS)
         # Those around the loads and two more at either end, for slopes: slices may be too narrow for heavier contacts.
         own = LineContactLaw(self.length, self.contact_modulus).load_and_stiffness(rungs, self.effective_radius)[0]

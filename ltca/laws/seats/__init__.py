@@ -1,11 +1,8 @@
-"""Conforming seats: what `ltca.laws.conforming` is made from.
-
-Modules in the order data passes:
+"""Conforming seats, for `ltca.laws.conforming`; modules in the order data passes.
 
 ===========  ============================================================
 sleeve_wall  Harmonics of a sleeve less those of an infinite body: a ring under pressure inside, a line force outside
 arc          Contact of a conforming seat over a given arc: pressure, play and approach in units of the load
-series       Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev
-             series each
+series       Arc, pressure and approach over the load, from Hertz to the neat fit: one Chebyshev series each
 ===========  ============================================================
 """

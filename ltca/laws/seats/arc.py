@@ -1,18 +1,7 @@
-r"""Contact of a conforming seat over a given arc: pressure, play and approach in units of the load.
+"""Contact of a conforming seat over a given arc |θ| < α: pressure, play and approach in units of the load.
 
-The harmonics of pin and bore (`ltca.laws.conforming`) fill the gap ΔR (1 − cos θ) − δ cos θ over the arc |θ| < α. The
-operator d²/dθ² + 1 takes cos θ and with it the approach δ out of that condition and makes every harmonic n ≥ 1 a constant
-plus a multiple of n:
-
-.. math:: -2 \sum n p_n \cos n\theta + 2\eta\, p + (c_0 - 2\eta) p_0 + 2 (1 - \eta) p_1 \cos\theta
-          = -\frac{E^* \Delta R}{a},
-
-with η half the mismatch of (κ − 1)/4μ and c₀ that of n = 0, both times E*. In t = tan(θ/2) = b s, b = tan(α/2), the sum is
-a hypersingular integral that has the eigenfunctions :math:`\sqrt{1 - s^2} U_k(s)`: for a given arc few of them solve the
-equation to round-off. The approach then follows from the condition itself at θ = 0.
-
-A sleeve has harmonics of a ring in place of those of the infinite body (`ltca.laws.seats.sleeve_wall`): additional smooth
-terms in the same equation.
+d²/dθ² + 1 takes δ out of the condition: −2 Σ n pₙ cos nθ + 2η p + (c₀ − 2η) p₀ + 2 (1 − η) p₁ cos θ = −E* ΔR/a. In t = tan(θ/2) =
+b s the sum is a hypersingular integral with the eigenfunctions √(1 − s²) U_k(s) (docs/theory/seats.md); sleeves add smooth terms.
 """
 
 from __future__ import annotations
@@ -33,16 +22,12 @@ QUADRATURE = 80
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArcSolution:
-    """Contact over a given arc, b = tan(α/2), in units of the load: p in F/(aL), displacements in F/(L E*).
+    """Contact over a given arc, b = tan(α/2), in units of the load: p in F/(aL), displacements in F/(L E*)."""
 
-    `play` is ΔR at which this arc is in contact, negative beyond the arc of the neat fit; `approach` is without the first
-    harmonic; `coefficients` are those of √(1 − s²) U_2k(s) in the pressure.
-    """
-
-    half_width: float
-    play: float
-    approach: float
-    coefficients: FloatArray
+    half_width: float  # b
+    play: float  # ΔR at which this arc is in contact, negative beyond the neat fit
+    approach: float  # without the first harmonic
+    coefficients: FloatArray  # of √(1 − s²) U_2k(s) in the pressure
 
     def pressure(self, angle: ArrayLike) -> FloatArray:
         """Return the pressure at angles (rad) from the line of load, in F/(aL); zero off the arc."""
@@ -88,10 +73,7 @@ def _points() -> tuple[_Points, _Points, _Points]:
 def solve_arc(
     half_width: float, mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
 ) -> ArcSolution:
-    """Return the contact over the arc of b = tan(α/2), for the mismatch η (zero for equal materials) and c₀ (one for them).
-
-    A sleeve is given by its κ, a/R and E*/4μ; without it the bore is in an infinite body.
-    """
+    """Return the contact over the arc of b = tan(α/2) for η (0 of equal materials), c₀ (1) and a sleeve's κ, a/R and E*/4μ."""
     b = half_width
     plain, logarithmic, points = _points()
     angle, weights = plain.on_arc(b)

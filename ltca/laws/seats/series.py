@@ -1,8 +1,6 @@
 """Arc, pressure and approach of a conforming seat over the load, from Hertz to the neat fit: one Chebyshev series each.
 
-With load q = F/(L E* ΔR) and z² = q/(q + π b₁²), b₁ of the neat fit, the arc, the peak pressure and the approach less
-its logarithm are analytic in z from Hertz (z = 0) to the neat fit (z = 1: the play is negligible beside the approach, and the
-contact linear): one Chebyshev series each. The first harmonic adds a spring, the only part that depends on the datum.
+With q = F/(L E* ΔR) and z² = q/(q + π b₁²), b₁ of the neat fit, they are analytic in z, the approach less its logarithm.
 """
 
 from __future__ import annotations
@@ -22,19 +20,14 @@ DEGREE = 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConformingSeries:
-    """Chebyshev series over z, from Hertz (z = 0) to the neat fit (z = 1).
+    """Chebyshev series over z, from Hertz (z = 0) to the neat fit (z = 1)."""
 
-    `half_width` is b/z, `pressure` z times the peak pressure in F/(aL), `approach` that in F/(L E*) without its logarithm,
-    −2/π ln z, and the first harmonic, `slope` its derivative by z, and `complement` ∫ δ dF in F²/(L E*) without the same.
-    `load_scale` is π b₁² of the neat fit.
-    """
-
-    load_scale: float
-    half_width: FloatArray
-    pressure: FloatArray
-    approach: FloatArray
-    slope: FloatArray
-    complement: FloatArray
+    load_scale: float  # π b₁² of the neat fit
+    half_width: FloatArray  # b/z
+    pressure: FloatArray  # z times the peak pressure in F/(aL)
+    approach: FloatArray  # in F/(L E*), without −2/π ln z and the first harmonic
+    slope: FloatArray  # its derivative by z
+    complement: FloatArray  # ∫ δ dF in F²/(L E*), without the same
 
     def evaluate(self, series: FloatArray, z: FloatArray) -> FloatArray:
         """Return one of the series at z, 0 … 1."""
@@ -75,10 +68,7 @@ def _complement(z: FloatArray, approach: FloatArray) -> FloatArray:
 def conforming_series(
     mismatch: float, breathing: float, sleeve: tuple[float, float, float] | None = None
 ) -> ConformingSeries:
-    """Return the series of two materials: η (zero for equal materials) and c₀ (one for equal materials).
-
-    A sleeve is given by its κ, a/R and E*/4μ; without it the bore is in an infinite body.
-    """
+    """Return the series of two materials, η (0 of equal ones) and c₀ (1), and of a sleeve's κ, a/R and E*/4μ, if there is one."""
     widest = _neat_fit(mismatch, breathing, sleeve)
     nodes = chebyshev.chebpts1(DEGREE + 1)
     place = 0.5 * (nodes + 1.0)

@@ -1,10 +1,7 @@
-r"""Harmonics of a sleeve less those of an infinite body: a ring under pressure inside and a line force in line with it outside.
+"""Harmonics of a sleeve less those of an infinite body: pₙ cos nθ on the inside, at a, and a line force outside, at R.
 
-Michell's stress functions :math:`r^{\pm n}, r^{2 \pm n}` (n ≥ 2), Lamé's solution (n = 0) and, for n = 1, those of a force in
-the middle, of the pressure inside (:math:`p_n \cos n\theta` at the radius a) and outside (at R): the load F at θ = 0 is
-F/2πRL for n = 0 and F/πRL for every other n. Radial displacements are outward and in units of a/4μ. All differences from the
-infinite body (inside) and from the full circle (outside) fall like (a/R)ⁿ or faster; only these are kept, so that few harmonics
-are enough.
+Michell's stress functions r^±n, r^(2±n), Lamé's for n = 0. The force at θ = 0 is F/2πRL of n = 0, F/πRL of others; displacements
+are outward, in a/4μ. Differences from infinite body and full circle fall like (a/R)ⁿ or faster, so few harmonics are enough.
 """
 
 from __future__ import annotations
@@ -23,17 +20,12 @@ MAX_HARMONICS = 600
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SleeveWall:
-    """Harmonics 0, 1, 2 … of a sleeve, displacements in a/4μ.
+    """Harmonics 0, 1, 2 … of a sleeve, displacements in a/4μ."""
 
-    `own` are those inside by pₙ, less those of the infinite body (n = 1: all of it, in the frame in which the uniform part of
-    both is zero), `across` those inside by the force outside, in F/(aL), `back` those outside at θ = 0 by pₙ, and `outside`
-    that there by the force outside, inward, in F/(aL), less that of the half-plane down to the distance R.
-    """
-
-    own: FloatArray
-    across: FloatArray
-    back: FloatArray
-    outside: float
+    own: FloatArray  # inside by pₙ, less those of the infinite body (n = 1: all of it, without the uniform part)
+    across: FloatArray  # inside by the force outside, in F/(aL)
+    back: FloatArray  # outside at θ = 0 by pₙ
+    outside: float  # there, inward, by the force, in F/(aL), less the half-plane's down to R
 
 
 @lru_cache(maxsize=256)
