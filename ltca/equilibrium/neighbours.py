@@ -32,21 +32,20 @@ def have_neighbours(moment: FloatArray) -> bool:
 
 
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
-    """Return which positions of one drive to balance first; all of them where neighbours are no help.
+    """Return which positions of one drive to balance first, in order of their angles; all where neighbours are no help.
 
     Crank angles are in rad, moments on the wheel in N·mm: only positions under the same moment have neighbours.
     """
-    everything = np.arange(angle.size)
+    order = np.argsort(angle, kind="stable")
     place = geometry.placement
     if not have_neighbours(moment):
-        return everything
-    order = np.argsort(angle, kind="stable")
+        return order
     passages = max(place.reduction_ratio, place.hole_radii.shape[-1], place.roller_radii.shape[-1] // place.cranks)
     spacing = float(np.max(np.diff(angle[order])))
     stride = min(MOST, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
     if stride < WORTH:
-        return everything
-    return np.sort(np.append(order[:-1:stride], order[-1]))
+        return order
+    return np.append(order[:-1:stride], order[-1])
 
 
 def between(angle: FloatArray, wanted: FloatArray) -> Way:

@@ -360,6 +360,7 @@ class Search:
             # With friction a direction may lead uphill from the start, as steeply as at its end.
             place = np.divide(-low_slope[back], rise, out=np.zeros(back.size), where=rise != 0.0)
             fraction[back] = low[back] + width * place.clip(0.05, 0.9)
+            pose = pose.copy()  # contacts know the poses at which they were found
             pose[back] = self.pose[rows[back]] + fraction[back, None] * step_pose[back]
             again = self.evaluate(rows[back], pose[back], take_positions(response.start, back), roughly=True)
             response = put_positions(response, back, again)
