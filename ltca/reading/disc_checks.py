@@ -309,6 +309,7 @@ def _holes(drive: Drive) -> Iterator[Problem]:
             "clearance.pin_hole",
             f"= {drive.clearance.pin_hole:g} mm",
             f"must be at most {0.5 * e:g} mm, half the eccentricity",
+            bound=("at most", 0.5 * e),
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
@@ -607,6 +608,7 @@ def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Itera
         f"the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
         f"{largest:g} mm, the radius of the largest pin",
         otherwise="pins touch it at two points at once",
+        bound=("greater than", largest),
     )
 
 

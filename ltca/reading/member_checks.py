@@ -162,6 +162,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"= {own:g} 1/K",
             f"must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, or leave one of them out: "
             "pin circle, slots and ring grow together",
+            bound=("equal to", slots),
         )
     if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
         yield from ring_mesh_problems(drive)
@@ -187,6 +188,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, {LARGEST_BOLT_CIRCLE:g} times "
             "ring.outer_radius: bolts stand in the ring",
             otherwise="in lugs on it",
+            bound=("at most", LARGEST_BOLT_CIRCLE * outer),
         )
 
 
@@ -215,6 +217,7 @@ def _first_stage(drive: Drive) -> Iterator[Problem]:
             "must be at most 0 beside first_stage: cranks that float in their bearings leave the planets no "
             "place in the mesh; give crank.support.preload or a clearance of 0 or less, or "
             "installation.first_stage_ratio in place of the teeth",
+            bound=("at most", 0.0),
         )
     if crank.circle_radius is None:
         return
@@ -714,7 +717,10 @@ def _per_disc(drive: Drive) -> Iterator[Problem]:
     if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
         mean = sum(planes) / len(planes)
         yield Problem.of(
-            "disc.planes", f"has the mean {mean:g} mm", "must be 0 mm, planes are centred on 0 where nothing bends"
+            "disc.planes",
+            f"has the mean {mean:g} mm",
+            "must be 0 mm, planes are centred on 0 where nothing bends",
+            bound=("equal to", 0.0),
         )
     yield from _eccentric_problems(drive)
     bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
@@ -956,6 +962,7 @@ def _slots(wheel: PinWheel) -> Iterator[Problem]:
             f"= {radius:g} mm",
             f"must be less than {room:.6g} mm",
             otherwise="neighbouring slots cut into each other",
+            bound=("less than", room),
         )
 
 
@@ -997,7 +1004,10 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
     half, thickness, planes = 0.5 * span, drive.disc.thickness, drive.disc.disc_planes
     if span > (most := range_of("mm")[1]):  # left out it follows from the discs
         yield Problem.of(
-            f"{path}.beam.span", f"= {span:g} mm, from the first disc to the last", f"must be at most {most:g} mm"
+            f"{path}.beam.span",
+            f"= {span:g} mm, from the first disc to the last",
+            f"must be at most {most:g} mm",
+            bound=("at most", most),
         )
         return
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
