@@ -136,7 +136,10 @@ class Disc:
     def phase(self) -> float:
         """ζ of the one disc, rad; DriveError for several discs, or values per disc."""
         if self.number_of_discs != 1 or not all(entry.of_bores_alone for entry in self.of):
-            raise DriveError([f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"])
+            said = "must be 1 here, and disc.of left out"
+            raise DriveError(
+                [Problem.of("disc.number_of_discs", f"= {self.number_of_discs}", said, bound=("equal to", 1))]
+            )
         return self.disc_phases[0]
 
     @property

@@ -162,11 +162,11 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
 
 def find_absent(tolerances: Tolerances, drives: Collection[Drive]) -> list[str]:
     """Return the problems of tolerances on fields that none of the drives has, one sentence each."""
-    found = []
+    found: list[str] = []
     for path in tolerances:
         problems = [nothing_scatters(drive, path) for drive in drives]
         if problems and problems[0] is not None and None not in problems:
-            found.append(f"tolerances.{path}: {problems[0]}")
+            found.append(Problem.of(f"tolerances.{path}", "", problems[0]))
     return found
 
 

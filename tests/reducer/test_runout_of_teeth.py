@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import error_says
 from scipy.optimize import brentq
 
 from ltca.analysis.engines import HalfSpace
@@ -247,9 +248,7 @@ def test_drives_without_first_stage_refuse_it(name):
 def test_a_run_in_time_refuses_it(rv):
     """By name: there all cranks have one angle."""
     drive = with_fields(rv, RUNOUT)
-    with pytest.raises(
-        DriveError, match=r"first_stage\.sun_runout, first_stage\.planet_runout: a run in time leaves out"
-    ):
+    with error_says(DriveError, "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out"):
         prepare_run(drive, HalfSpace(), Course(motion="steady", time=0.01, speed=100.0))
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
@@ -232,7 +233,7 @@ def test_bores_stand_clear_of_every_hole(rv, hole):
     for side in (touch, -touch):
         beyond, within = 120.0 * hole + side * 1.001, 120.0 * hole + side * 0.999
         with_fields(drive, {"crank.angle": float(np.radians(beyond))})
-        with pytest.raises(DriveError, match=r"a bore and a hole .* cut into each other"):
+        with error_says(DriveError, "a bore and a hole ", " cut into each other"):
             with_fields(drive, {"crank.angle": float(np.radians(within))})
     distance = np.sqrt(42.0**2 + 45.0**2 - 2.0 * 42.0 * 45.0 * np.cos(np.radians(25.0)))
     with pytest.raises(DriveError) as caught:

@@ -6,6 +6,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from refusals import refused_field
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
@@ -81,13 +82,9 @@ def test_moments_of_a_held_wheel_close_without_a_torque(paper):
 
 
 def test_play_without_a_torque_is_refused_by_name(paper):
-    with pytest.raises(
-        DriveError, match=r"^load\.torque = 0 N·mm: must be greater than 0: without a torque the output has a "
-    ):
+    with refused_field("load.torque", "= 0 N·mm", "without a torque the output has a ", bound=("greater than", 0.0)):
         analyse(with_fields(paper, {"load.torque": 0.0}), ANGLES)
-    with pytest.raises(
-        DriveError, match=r"^torque = 0 N·mm: .* free play of .*′ at crank angle .* \(2 of 2 positions\)"
-    ):
+    with refused_field("torque", "= 0 N·mm", " free play of ", "′ at crank angle ", " (2 of 2 positions)", alone=True):
         analyse(paper, ANGLES, 0.0)
 
 
@@ -168,7 +165,7 @@ def test_preload_rises_from_nothing(paper):
 
 
 def test_curves_need_a_torque(paper):
-    with pytest.raises(DriveError, match=r"load\.torque = 0 N·mm: must be greater than 0 for torque curves"):
+    with refused_field("load.torque", "= 0 N·mm", "for torque curves", bound=("greater than", 0.0)):
         torque_curve(with_fields(paper, TIGHT | {"load.torque": 0.0}), ANGLES)
 
 

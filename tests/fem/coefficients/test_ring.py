@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from fem.body import pin_ring
 from fem.body.pin_ring import flexibility_of, seat_flexibility, seat_loads
@@ -266,13 +267,13 @@ def test_damaged_and_foreign_files_are_told(joint, derived, tmp_path, capsys):
     wrong = dataset.copy(deep=True)
     wrong["flexibility"].values[0, 0, 1, 1] *= 3.0
     write_ring(wrong, path)
-    with pytest.raises(DamagedFileError, match=r"breaks laws of a ring's flexibility .*: symmetry is"):
+    with error_says(DamagedFileError, "breaks laws of a ring's flexibility ", ": symmetry is"):
         read_ring(path)
     write_ring(dataset.assign(flexibility=-dataset["flexibility"]), path)
     with pytest.raises(DamagedFileError, match="smallest eigenvalue is"):
         read_ring(path)
     write_ring(dataset.drop_vars("flexibility"), path)
-    with pytest.raises(DamagedFileError, match=r"is no file of a ring's flexibility .*: it lacks flexibility"):
+    with error_says(DamagedFileError, "is no file of a ring's flexibility ", ": it lacks flexibility"):
         read_ring(path)
     # In the cache a damaged file is made again.
     kept = rings.kept_file(rings.file_name(joint))
@@ -351,7 +352,7 @@ def test_nothing_installed_that_derives_is_said(joint, derived, monkeypatch):
 
     monkeypatch.setattr(coefficient_files, "entry_points", lambda group: ())
     monkeypatch.setattr(rings, "derivation", coefficient_files.derivation)
-    with pytest.raises(CycloError, match=r'ring\.model = "fe": nothing is installed that derives a ring'):
+    with error_says(CycloError, 'ring.model = "fe": nothing is installed that derives a ring'):
         ring_flexibility(joint)
 
 

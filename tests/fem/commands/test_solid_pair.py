@@ -7,6 +7,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import error_says
 
 from fem.commands import fem as command
 from ltca.errors import DriveError
@@ -52,7 +53,7 @@ def test_files_of_a_pair(tmp_path, capsys):
 def test_a_rigid_shaft_pin_has_no_referee(tmp_path):
     """It was refused after the solution only, and left a folder behind."""
     words = ("examples/drives/plastic.toml", "--bodies", "solid", "--pair", "hole", "--load", "200")
-    with pytest.raises(DriveError, match=r"--referee calculix: has no effect on a rigid shaft pin"):
+    with error_says(DriveError, starts="--referee calculix: has no effect on a rigid shaft pin"):
         run(*words, "--referee", "calculix", "--out", str(tmp_path / "out"))
     assert not (tmp_path / "out").exists()
 

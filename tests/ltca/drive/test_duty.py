@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from refusals import refused_field
 
 from ltca.drive.fields import absence, field_kind, read_field
 from ltca.drive.parts import Duty, Lubricant
@@ -77,7 +78,7 @@ def test_mistakes_are_named(old, new, message):
 
 
 def test_a_table_in_the_place_of_tables():
-    with pytest.raises(DriveError, match=r"must be an array of tables, written \[\[duty\]\]"):
+    with refused_field("duty", "", "must be an array of tables, written [[duty]]"):
         drive_of(PLAIN + "\n[duty]\ntorque = 1.0\nspeed = 1.0\nshare = 1.0\n")
 
 
@@ -89,7 +90,7 @@ def test_shares_of_thirds_add_up_within_round_off():
 
 def test_a_lubricant_without_a_speed_is_refused():
     oil = "\n[lubricant]\nviscosity = 46.0\ncontamination = 0.5\n"
-    with pytest.raises(DriveError, match=r"lubricant\.viscosity = 46 mm²/s: needs a speed, load\.speed or those of"):
+    with refused_field("lubricant.viscosity", "= 46 mm²/s", "needs a speed, load.speed or those of"):
         drive_of(PLAIN + oil)
     drive = drive_of(PLAIN.replace("[load]", "[load]\nspeed = 1500.0") + oil)
     assert not find_contradictions(drive)
@@ -104,11 +105,11 @@ def test_fields_by_their_paths():
     assert absence(drive, "duty.2.speed") == "there is no entry 2; [[duty]] has 2, counted from 0"
     faster = with_fields(drive, {"duty.1.speed": 2000.0, "lubricant.viscosity": 32.0})
     assert (faster.duty[1].speed, faster.duty[0], faster.lubricant.viscosity) == (2000.0, drive.duty[0], 32.0)
-    with pytest.raises(DriveError, match=r"duty\.2: there is no entry 2"):
+    with refused_field("duty.2", "", "there is no entry 2"):
         with_fields(drive, {"duty.2.speed": 2000.0})
-    with pytest.raises(DriveError, match=r"duty\.2\.torque = -1"):
+    with refused_field("duty.2.torque", "= -1.0"):
         with_fields(drive, {"duty.2.speed": 1.0, "duty.2.torque": -1.0, "duty.2.share": 0.1})
-    with pytest.raises(DriveError, match=r"did you mean `duty\.N\.share`\? N of duty\.N is the entry"):
+    with refused_field("duty.0.shar", "", "did you mean `duty.N.share`? N of duty.N is the entry"):
         with_fields(drive, {"duty.0.shar": 0.5})
 
 
@@ -116,7 +117,7 @@ def test_an_entry_is_added_whole():
     drive = drive_of(PLAIN)
     added = with_fields(drive, {"duty.0.speed": 1.0, "duty.0.torque": 1.0, "duty.0.share": 1.0})
     assert added.duty == (Duty(torque=1.0, speed=1.0, share=1.0),)
-    with pytest.raises(DriveError, match=r"duty\.0: there is no entry 0"):
+    with refused_field("duty.0", "", "there is no entry 0"):
         with_fields(drive, {"duty.0.speed": 1.0, "duty.0.share": 1.0})
 
 

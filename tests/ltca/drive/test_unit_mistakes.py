@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
@@ -50,9 +51,7 @@ def test_gigapascals_as_plain_number(vary):
 
 @pytest.mark.slow
 def test_a_torque_a_thousand_times_too_large(vary):
-    with pytest.raises(
-        DriveError, match=r"^load.torque = 3.773e\+08 N·mm is 377300 N·m and would press .*\"377.3 N m\""
-    ):
+    with error_says(DriveError, '"377.3 N m"', starts="load.torque = 3.773e+08 N·mm is 377300 N·m and would press "):
         analyse(vary(load={"torque": 377.3e6}), ANGLE)
     with pytest.raises(DriveError, match=r"^torque = 3.773e\+08 N·mm is"):
         analyse(vary(), ANGLE, 377.3e6)
@@ -61,13 +60,13 @@ def test_a_torque_a_thousand_times_too_large(vary):
 @pytest.mark.slow
 def test_a_light_torque_beyond_reason(vary):
     """It was 'no equilibrium … the teeth slip': only the torque itself was looked at."""
-    with pytest.raises(DriveError, match=r"^load.light_torque = 1e\+09 N·mm is 1e\+06 N·m and would press"):
+    with error_says(DriveError, starts="load.light_torque = 1e+09 N·mm is 1e+06 N·m and would press"):
         analyse(vary(load={"light_torque": 1e9}), ANGLE)
 
 
 @pytest.mark.slow
 def test_a_stiffness_in_another_unit(vary):
-    with pytest.raises(DriveError, match=r"pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
+    with error_says(DriveError, "pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
         analyse(vary(pin_shaft={"stiffness": 1.0}), ANGLE)
 
 
@@ -434,7 +433,7 @@ def test_kelvin_that_seizes_a_drive_is_named():
     drive = next(iter(parse_drive(shipped_drive("robot-joint")).cases.values()))
     parts = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
     expands = {f"materials.{part}.thermal_expansion": 2.3e-5 for part in parts}
-    with pytest.raises(DriveError, match=r'^temperature.disc = 293 °C: .*kelvin are written "293 K"'):
+    with error_says(DriveError, 'kelvin are written "293 K"', starts="temperature.disc = 293 °C: "):
         analyse(with_fields(drive, expands | {"temperature.disc": 293.0}), ANGLE)
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline
@@ -159,7 +160,7 @@ def test_holes_that_compensation_lets_cut_into_each_other(kinds_of_drives):
     shaft = replace(drive.pin_shaft, pin_circle_radius=40.0, hole_radius=14.4)
     wide = replace(drive, pin_shaft=shaft, crank_bearing=replace(drive.crank_bearing, outer_race_radius=20.0))
     assert make_parts(wide, "CS-1")
-    with pytest.raises(DriveError, match=r"--compensate 1 mm: hole \d and hole \d cut into each other by 0.1853 mm"):
+    with error_says(DriveError, "--compensate 1 mm: hole ", " and hole ", " cut into each other by 0.1853 mm"):
         make_parts(wide, "CS-1", compensation=1.0)
 
 
@@ -196,7 +197,7 @@ def test_flanges_stand_on_their_posts(kinds_of_drives):
     (part,) = make_parts(sleeved, "nominal", "carrier", compensation=0.1)
     assert features(part) == {"post": 3, "flange": 2, "flange-hole": 22}
     assert {hole.radius for hole in circles(part, "flange-hole") if abs(hole.centre) > 1.0} == {4.6}
-    with pytest.raises(DriveError, match=r"--part carrier: there is no carrier\.posts in this drive"):
+    with error_says(DriveError, "--part carrier: there is no carrier.posts in this drive"):
         make_parts(kinds_of_drives["paper"], "CS-1", "carrier")
 
 

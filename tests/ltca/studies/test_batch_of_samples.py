@@ -7,6 +7,7 @@ import tomllib
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.friction.losses import losses
@@ -248,7 +249,7 @@ def test_cases_with_and_without_pin_shaft_share_what_both_have(tmp_path):
     study = parse_sweep(table, str(path), engine=HalfSpace())
     assert not set(OF_THE_PIN_SHAFT) & set(study.quantities)
     assert np.isfinite(run_batch(study, 0).values).all()
-    with pytest.raises(DriveError, match=r"max_pin_shaft_load: .* no pin shaft .*: case without"):
+    with error_says(DriveError, "max_pin_shaft_load: ", " no pin shaft ", ": case without"):
         parse_sweep({**table, "quantities": ["max_pin_shaft_load"]}, str(path))
 
 

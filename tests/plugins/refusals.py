@@ -1,0 +1,74 @@
+"""Errors by the data that they carry, field, value and bound, or by their sentences, without regular expressions."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import pytest
+
+from ltca.errors import DriveError, Problem
+
+
+def stands_in(pieces: Sequence[str], text: str) -> bool:
+    """Tell whether pieces of text stand in a text, one behind the other."""
+    at = 0
+    for piece in pieces:
+        if (at := text.find(piece, at)) < 0:
+            return False
+        at += len(piece)
+    return True
+
+
+def problem_of(error: DriveError, path: str) -> Problem:
+    """Return the one sentence of an error that carries the field `path`."""
+    about = [problem for problem in error.problems if isinstance(problem, Problem) and problem.path == path]
+    assert len(about) == 1, f"{path}: {error.problems}"
+    return about[0]
+
+
+@contextmanager
+def refused_field(
+    path: str,
+    value: str = "",
+    *said: str,
+    bound: Any = None,
+    alone: bool = False,
+    source: str = "",
+    error: type[DriveError] = DriveError,
+) -> Generator[pytest.ExceptionInfo[DriveError], None, None]:
+    """Require an error about a field with its value, "= 4 mm" or empty for any, and its bound, such as ("at most", 3.5).
+
+    Pieces of what is `said` stand in the sentence in this order; with `alone` it is the only one. `source` is the file.
+    """
+    with pytest.raises(error) as caught:
+        yield caught
+    problem = problem_of(caught.value, path)
+    assert not alone or len(caught.value.problems) == 1, caught.value.problems
+    assert not source or caught.value.source == source
+    assert not value or problem.subject == f"{path} {value}", problem
+    assert bound is None or problem.bound == bound, (problem, problem.bound)
+    assert stands_in(said, problem.said), (problem, said)
+
+
+@contextmanager
+def error_says(
+    error: type[BaseException] | tuple[type[BaseException], ...], *pieces: str, starts: str = ""
+) -> Generator[pytest.ExceptionInfo[Any], None, None]:
+    """Require an error with a line in which pieces of text stand in this order, and whose message `starts` so."""
+    with pytest.raises(error) as caught:
+        yield caught
+    text = str(caught.value)
+    assert text.startswith(starts), text
+    assert any(stands_in(pieces, line) for line in text.splitlines()), (text, pieces)
+
+
+@contextmanager
+def error_is(
+    error: type[BaseException] | tuple[type[BaseException], ...], sentence: str
+) -> Generator[pytest.ExceptionInfo[Any], None, None]:
+    """Require an error whose whole message is a sentence."""
+    with pytest.raises(error) as caught:
+        yield caught
+    assert str(caught.value) == sentence
