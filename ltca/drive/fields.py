@@ -166,9 +166,9 @@ def element_count(drive: Drive, path: str) -> int | None:
     """
     kind = field_kind(path)
     if kind is None:
-        raise DriveError([f"{path}: {not_a_field(drive, path)}"])
+        raise DriveError([Problem.of(path, "", not_a_field(drive, path))])
     if missing := missing_part(drive, path):
-        raise DriveError([f"{path}: there is no {missing} in this drive"])
+        raise DriveError([Problem.of(path, "", f"there is no {missing} in this drive")])
     drive, path = _of_disc(drive, path)
     if not kind.is_array:
         return None

@@ -32,15 +32,13 @@ def describe_mistakes(
         PIN_SHAFT
     ):
         words = f"{', '.join(PIN_SHAFT[:-1])} and {PIN_SHAFT[-1]}"
-        told.append(
-            f"{_path(shaft)}: {words} are missing; without them the drive has no pin shaft, and nothing of it is used"
-        )
+        said = f"{words} are missing; without them the drive has no pin shaft, and nothing of it is used"
+        told.append(Problem.of(_path(shaft), "", said))
         found = [(place, detail) for place, detail in found if place[:-1] != shaft or place[-1] not in PIN_SHAFT]
     for place, detail in found:
         if place in meant:
-            told.append(
-                f"{_words(place, len(prefix))}: is not a field; did you mean `{meant[place][-1]}`, which is missing?"
-            )
+            said = f"is not a field; did you mean `{meant[place][-1]}`, which is missing?"
+            told.append(Problem.of(_path(place), "", said, shown=_words(place, len(prefix))))
         elif place not in meant.values():
             told.append(_sentence(place, _words(place, len(prefix)), detail, known))
     return told

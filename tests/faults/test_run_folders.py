@@ -89,7 +89,7 @@ def test_one_process_does_not_hold_a_folder_twice(tmp_path):
         pass
     with claimed_file(tmp_path / "a.nc", "derive"):
         with (
-            pytest.raises(PlaceError, match=r"a\.nc: cyclo derive \(process"),
+            error_says(PlaceError, "a.nc: cyclo derive (process"),
             claimed_file(tmp_path / "a.nc", "derive"),
         ):
             pass

@@ -44,7 +44,7 @@ def test_the_samples_of_a_grid_are_bounded_before_its_levels_are_looked_at(monke
 def test_of_many_levels_the_ends_are_asked():
     levels = {"load.torque": {"low": 1.0, "high": 2.0, "levels": 1000}}
     assert parse_sweep({"factors": levels}, "paper").design.samples == 1000
-    with pytest.raises(DriveError, match=r"factors\.load\.torque"):
+    with error_says(DriveError, "factors.load.torque"):
         parse_sweep({"factors": {"load.torque": [1.0] * 999 + [-1.0]}}, "paper")
 
 

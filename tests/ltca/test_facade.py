@@ -57,10 +57,10 @@ def test_front_door_names():
         ({"hole_near_field": False}, "hole_near_field: has no effect with compliance half-space"),
         ({"compliance": ltca.HalfSpace(), "method": "tables"}, "method: is an option of the engine"),
         ({"compliance": 3}, "must be an engine or one of"),
-        ({"torque": -1.0}, r"torque = -1: must be finite and at least 0 N·mm"),
+        ({"torque": -1.0}, "torque = -1: must be finite and at least 0 N·mm"),
         ({"torque": float("nan")}, "must be finite"),
-        ({"torque": "377 mm"}, r"torque = '377 mm': must have the unit N·mm or another of torque"),
-        ({"torque": "-3 N m"}, r"torque = '-3 N m': must be at least 0 N·mm \(load.direction turns it\)"),
+        ({"torque": "377 mm"}, "torque = '377 mm': must have the unit N·mm or another of torque"),
+        ({"torque": "-3 N m"}, "torque = '-3 N m': must be at least 0 N·mm (load.direction turns it)"),
         ({"torque": True}, "must be a number in N·mm"),
         ({"crank_angle": []}, "must be one row of at least one angle"),
         ({"crank_angle": [[0.0]]}, "must be one row of at least one angle"),
@@ -81,7 +81,7 @@ def test_front_door_names():
     ],
 )
 def test_what_makes_no_sense_is_refused_at_once(options, message):
-    with pytest.raises(DriveError, match=message):
+    with error_says(DriveError, message):
         ltca.analyse(DRIVE, **options)
 
 

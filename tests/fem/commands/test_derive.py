@@ -341,10 +341,10 @@ def test_a_file_that_only_claims_to_be_the_drives_is_found_out(variable, change,
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda d: d.drop_vars(["race_approach", "pin_half_width"]), "it lacks pin_half_width, race_approach$"),
+        (lambda d: d.drop_vars(["race_approach", "pin_half_width"]), "it lacks pin_half_width, race_approach"),
         (lambda d: d.drop_attrs(), "it lacks the attributes shape, clearances_left_out, bearing_clearance"),
-        (lambda d: d.assign(wide_station=("wide", [0])), "it lacks wide_half_width, wide_approach$"),
-        (lambda d: d.assign(station_x=("place", d["station_x"].values)), r"station_x has the dimensions \(place\)"),
+        (lambda d: d.assign(wide_station=("wide", [0])), "it lacks wide_half_width, wide_approach"),
+        (lambda d: d.assign(station_x=("place", d["station_x"].values)), "station_x has the dimensions (place)"),
         (lambda d: d.isel(station_loaded=slice(5)), "station and station_loaded differ in length"),
         (lambda d: d.assign(pin_approach=np.nan), "pin_approach holds values that are no finite numbers"),
         (lambda d: d.assign(pin_approach="soft"), "pin_approach holds no numbers"),
@@ -363,7 +363,7 @@ def test_a_file_that_only_claims_to_be_the_drives_is_found_out(variable, change,
     ],
 )
 def test_a_wrong_schema_is_one_line(change, message, dataset, tmp_path):
-    with pytest.raises(CycloError, match=message) as caught:
+    with error_says(CycloError, message) as caught:
         run("--check", write(change(foreign(dataset)), tmp_path))
     assert "\n" not in str(caught.value)
 

@@ -320,7 +320,7 @@ def test_memory_limit_compares_with_what_is_given() -> None:
     ],
 )
 def test_wrong_sizes_are_refused(shapes: DriveShapes, make, message: str) -> None:
-    with pytest.raises(MeshError, match=message):
+    with error_says(MeshError, message):
         make(shapes)
 
 

@@ -116,7 +116,7 @@ def test_error_bars_of_the_command(folder, paper_cases):
     ],
 )
 def test_refusals_name_the_option(words, told, tmp_path):
-    with pytest.raises(CycloError, match=told):
+    with error_says(CycloError, told):
         run("paper", "--angle", "0.5", "--out", str(tmp_path / "out"), *words)
     assert not (tmp_path / "out").exists()
 

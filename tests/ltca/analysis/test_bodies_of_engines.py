@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from refusals import error_is, refused_field
+from refusals import error_is, error_says, refused_field
 
 import ltca
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain, engine_named, engine_of, nearly_same_body
@@ -59,7 +59,7 @@ def test_names_of_bodies_reach_the_engine():
     ],
 )
 def test_bodies_that_mean_nothing_are_refused(given, words):
-    with pytest.raises(DriveError, match=words):
+    with error_says(DriveError, words):
         ltca.analyse(PAPER, 2, **given)
 
 

@@ -53,7 +53,7 @@ def test_gigapascals_as_plain_number(vary):
 def test_a_torque_a_thousand_times_too_large(vary):
     with error_says(DriveError, '"377.3 N m"', starts="load.torque = 3.773e+08 N·mm is 377300 N·m and would press "):
         analyse(vary(load={"torque": 377.3e6}), ANGLE)
-    with pytest.raises(DriveError, match=r"^torque = 3.773e\+08 N·mm is"):
+    with error_says(DriveError, starts="torque = 3.773e+08 N·mm is"):
         analyse(vary(), ANGLE, 377.3e6)
 
 

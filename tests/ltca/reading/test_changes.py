@@ -6,6 +6,7 @@ import pickle
 import re
 
 import pytest
+from refusals import error_says
 
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.single_discs import single_discs
@@ -80,11 +81,11 @@ def test_warmth_is_that_of_the_changed_drive():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"pin_wheel.pin_radiu": 5}, r"pin_wheel\.pin_radiu: is not a field of .*; did you mean `pin_wheel.pin_radius`"),
-        ({"pin_wheel": {"pin_radiu": 5}}, r"pin_wheel\.pin_radiu: is not a field"),
-        ({"pin_wheel.pin_radius": "5 N"}, r"pin_wheel\.pin_radius = '5 N': must have the unit mm"),
-        ({"pin_wheel.pin_radius": -1}, r"pin_wheel\.pin_radius = -1: must be greater than 0 mm"),
-        ({"pin_wheel.pin_radius": 90}, r"pin"),
+        ({"pin_wheel.pin_radiu": 5}, "pin_wheel.pin_radiu: is not a field of …; did you mean `pin_wheel.pin_radius`"),
+        ({"pin_wheel": {"pin_radiu": 5}}, "pin_wheel.pin_radiu: is not a field"),
+        ({"pin_wheel.pin_radius": "5 N"}, "pin_wheel.pin_radius = '5 N': must have the unit mm"),
+        ({"pin_wheel.pin_radius": -1}, "pin_wheel.pin_radius = -1: must be greater than 0 mm"),
+        ({"pin_wheel.pin_radius": 90}, "pin"),
         ({"pin_wheel": 5}, "pin_wheel: is a table; name its fields, as `pin_wheel.number_of_pins`"),
         ({"load": {}}, "load: is a table; name its fields"),
         ({"nothing": {}}, "nothing: is not a field"),
@@ -101,7 +102,7 @@ def test_warmth_is_that_of_the_changed_drive():
     ],
 )  # fmt: skip
 def test_what_is_no_change_is_refused_by_name(changes, message):
-    with pytest.raises(DriveError, match=message):
+    with error_says(DriveError, *message.split("…")):
         PAPER.with_fields(changes)
 
 

@@ -155,7 +155,7 @@ def test_engines_of_one_plane_refuse_slices_by_name(engine, words, paper):
 
 def test_a_misspelt_lead_is_told_in_a_plane_drive(paper):
     """What needs slices is a field of a plane drive too: its name is found."""
-    with pytest.raises(DriveError, match=r"did you mean `disc\.lead_slope`"):
+    with error_says(DriveError, "did you mean `disc.lead_slope`"):
         with_fields(paper, {"disc.lead_slop": 1e-4})
 
 

@@ -174,11 +174,11 @@ def test_a_file_serves_its_shape_only(paper, tmp_path, monkeypatch):
         (["--coefficients", file], "coefficients: has no effect with compliance half-space"),
         (["--no-hole-near-field"], "hole_near_field: has no effect with compliance half-space"),
     ):
-        with pytest.raises(DriveError, match=message):
+        with error_says(DriveError, message):
             run(sweep, path, *words)
-        with pytest.raises(DriveError, match=message):
+        with error_says(DriveError, message):
             run(tolerance, "paper", *words)
-        with pytest.raises(DriveError, match=message):
+        with error_says(DriveError, message):
             run(optimise, "paper", "--vary", "thickness", "--minimise", "max_pin_load", *words)
     words = ["--vary", "thickness", "--minimise", "max_pin_load", "--compliance", "fe", "--coefficients", file]
     with error_says(DriveError, "serves one shape, and --vary thickness changes it"):

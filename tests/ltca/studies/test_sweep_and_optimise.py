@@ -301,7 +301,7 @@ def test_replacing_fields_keeps_the_rest(drive):
     own = with_fields(changed, {"disc.of.1.runout.amount": 0.003, "disc.of.1.clearance.bearing": 0.02})
     assert [single.disc.runout.amount for single in single_discs(own)] == [drive.disc.runout.amount, 0.003]
     assert [single.clearance.bearing for single in single_discs(own)] == [drive.clearance.bearing, 0.02]
-    with pytest.raises(DriveError, match=r"disc\.of has 2 entries: must have 3"):
+    with error_says(DriveError, "disc.of has 2 entries: must have 3"):
         with_fields(own, {"disc.number_of_discs": 3})
     with pytest.raises(DriveError, match=r"there is no disc 2"):
         with_fields(changed, {"disc.of.2.runout.amount": 0.003})
