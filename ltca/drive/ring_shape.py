@@ -104,6 +104,7 @@ def ring_mesh_problems(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be at least {circle:g} mm (pin_wheel.pin_circle_radius) for finite elements of the ring: "
             f"{between:.4g} mm of metal are left between two seats",
+            bound=("at least", circle),
         )
     bolts, patch = ring.bolts, bolt_patch_radius(drive)
     if bolts is None or ring.flange == "built-in":

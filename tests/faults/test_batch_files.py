@@ -181,7 +181,7 @@ def test_another_study_does_not_take_an_unfinished_ones_folder(other, interrupte
 def test_another_study_replaces_a_finished_one_only_when_told(study, other, interrupted, reference, solved):
     """A finished study was replaced in silence by one of another seed."""
     run_study(study, interrupted, Workers(), resume=True)
-    with error_says(CycloError, "holds a finished study that is another (", "seed", "--force to replace it"):
+    with error_says(CycloError, "holds a finished study that is another (", "seed", ends="--force to replace it"):
         interrupted.prepare(other, resume=False)
     assert interrupted.results.read_bytes() == reference
     assert interrupted.prepare(study, resume=False) == list(range(study.batches))  # its own it may solve again

@@ -54,13 +54,14 @@ def refused_field(
 
 @contextmanager
 def error_says(
-    error: type[BaseException] | tuple[type[BaseException], ...], *pieces: str, starts: str = ""
+    error: type[BaseException] | tuple[type[BaseException], ...], *pieces: str, starts: str = "", ends: str = ""
 ) -> Generator[pytest.ExceptionInfo[Any], None, None]:
-    """Require an error with a line in which pieces of text stand in this order, and whose message `starts` so."""
+    """Require an error with a line in which pieces of text stand in this order, and whose message `starts` and `ends` so."""
     with pytest.raises(error) as caught:
         yield caught
     text = str(caught.value)
     assert text.startswith(starts), text
+    assert text.endswith(ends), text
     assert any(stands_in(pieces, line) for line in text.splitlines()), (text, pieces)
 
 

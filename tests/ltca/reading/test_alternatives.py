@@ -7,13 +7,13 @@ import pickle
 import pytest
 from refusals import refused_field
 
-from ltca.reading.alternatives import Alternatives
+from ltca.reading.alternatives import Alternatives, Bound
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 from ltca.reading.physical_checks import find_contradictions
 
 PAPER = load_drive("paper").cases["CS-1"]
-BOUNDS = {"crank.eccentricity": "at most 3 mm", "pin_shaft.hole_radius": "at least 15 mm"}
+BOUNDS = {"crank.eccentricity": Bound("at most", 3.0), "pin_shaft.hole_radius": Bound("at least", 15.0)}
 
 
 @pytest.mark.parametrize(
