@@ -237,13 +237,14 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
     space = bearing.outer_race_radius - bearing.inner_race_radius
     if space <= 0.0:
         fitting = bearing.outer_race_radius - 2.0 * bearing.roller_radius
-        bound = f"at most {fitting:g} mm" if fitting > 0.0 else f"less than {bearing.outer_race_radius:g} mm"
+        largest = Bound("at most", fitting) if fitting > 0.0 else Bound("less than", bearing.outer_race_radius)
         yield Problem.of(
             "crank_bearing.inner_race_radius",
             f"= {bearing.inner_race_radius:g} mm",
-            f"must be {bound}",
+            f"must be {largest}",
             otherwise="the rollers have no room below the outer race (outer_race_radius = "
             f"{bearing.outer_race_radius:g} mm)",
+            bound=largest[:2],
         )
     elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
         yield Problem.of(
