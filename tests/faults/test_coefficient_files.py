@@ -93,8 +93,9 @@ def test_any_bit_of_a_number_is_seen(drive, sound, tmp_path):
     for _ in range(10):
         place = first + int(rng.integers(size))
         path.write_bytes(content[:place] + bytes([content[place] ^ (1 << int(rng.integers(8)))]) + content[place + 1 :])
-        with pytest.raises(DamagedFileError, match=r"checksum|no finite numbers|cannot be read"):
+        with pytest.raises(DamagedFileError) as caught:
             load_coefficients(path, drive)
+        assert any(words in str(caught.value) for words in ("checksum", "no finite numbers", "cannot be read"))
 
 
 def scaled(name, factor):

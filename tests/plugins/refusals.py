@@ -70,3 +70,20 @@ def error_is(
     with pytest.raises(error) as caught:
         yield caught
     assert str(caught.value) == sentence
+
+
+def reads_as(sentence: str, text: str) -> bool:
+    """Tell whether a text is a sentence in which each "…" stands for any words, or none, on its line."""
+    first, *pieces = sentence.split("…")
+    if not pieces:
+        return text == sentence
+    *within, last = pieces
+    inner = text.removeprefix(first)
+    long_enough = len(text) >= len(first) + len(last)
+    return (
+        long_enough
+        and text.startswith(first)
+        and text.endswith(last)
+        and "\n" not in text
+        and stands_in(within, inner[: len(inner) - len(last)])
+    )

@@ -377,7 +377,7 @@ def test_steep_tilts_are_told(drive):
         inclined = {f"{part}.inclination.y": size for part in ("pin_wheel", "pin_shaft", "crank")}
         return [text for text in analyse(with_fields(drive, inclined), ANGLES[:1]).warnings if "discs tilt" in text]
 
-    assert re.match(r"discs tilt by up to 6 mrad: gaps and forces are linear", told(6e-3)[0])
+    assert told(6e-3)[0].startswith("discs tilt by up to 6 mrad: gaps and forces are linear")
     assert told(4e-3) == []
     plane = analyse(with_fields(drive, {"contact.slices": 1}), ANGLES[:1])
     assert not any("discs tilt" in text for text in plane.warnings)
