@@ -21,6 +21,14 @@ def stands_in(pieces: Sequence[str], text: str) -> bool:
     return True
 
 
+def says_bound(problem: Problem) -> bool:
+    """Tell whether a sentence says the bound that it carries: its relation, unless it is "equal to", and its number, rounded."""
+    assert problem.bound is not None
+    relation, number = problem.bound
+    said = relation == "equal to" or relation in problem.said
+    return said and any(f"{number:.{digits}g}" in problem.said for digits in range(2, 13))
+
+
 @contextmanager
 def refused_field(
     path: str,
@@ -43,7 +51,7 @@ def refused_field(
     about = [problem for problem in problems if isinstance(problem, Problem) and problem.path == path]
     assert any(
         (not value or problem.subject == f"{path} {value}")
-        and (bound is None or problem.bound == bound)
+        and (bound is None or (problem.bound == bound and says_bound(problem)))
         and stands_in(said, problem.said)
         for problem in about
     ), f"{path} {value}, {bound}, {said}: {[(problem, problem.bound) for problem in about] or problems}"
