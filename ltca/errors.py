@@ -25,14 +25,17 @@ class Problem(str):
         What would go wrong beyond the bound; empty where the sentence does not say it apart from the bound.
     trouble : str
         What is wrong, said before the bound; empty as well.
+    bound : tuple of str and float, optional
+        Relation and number of the bound, in the unit of the sentence; None where no number is known.
 
     Examples
     --------
-    >>> problem = Problem.of("pin_wheel.pin_radius", "= 20 mm", "must be less than 14 mm", otherwise="pins overlap")
+    >>> bound = ("less than", 14.0)
+    >>> problem = Problem.of("disc.gap", "= 20 mm", "must be less than 14 mm", otherwise="discs overlap", bound=bound)
     >>> problem
-    'pin_wheel.pin_radius = 20 mm: must be less than 14 mm, or pins overlap'
-    >>> problem.path, problem.consequence
-    ('pin_wheel.pin_radius', 'pins overlap')
+    'disc.gap = 20 mm: must be less than 14 mm, or discs overlap'
+    >>> problem.path, problem.consequence, problem.bound
+    ('disc.gap', 'discs overlap', ('less than', 14.0))
     """
 
     path: str = ""
@@ -40,18 +43,29 @@ class Problem(str):
     said: str = ""
     consequence: str = ""
     trouble: str = ""
+    bound: tuple[str, float] | None = None
 
     @classmethod
-    def of(cls, path: str, value: str, said: str, *, otherwise: str = "", trouble: str = "", shown: str = "") -> Self:
+    def of(
+        cls,
+        path: str,
+        value: str,
+        said: str,
+        *,
+        otherwise: str = "",
+        trouble: str = "",
+        shown: str = "",
+        bound: tuple[str, float] | None = None,
+    ) -> Self:
         """Return the sentence on a field and its value, "= 4 mm" or empty; `shown` is what the field is called in it.
 
-        A bound that is `said` is followed by what goes wrong `otherwise`, or comes behind the `trouble`.
+        A bound that is `said` is followed by what goes wrong `otherwise`, or comes behind the `trouble`; `bound` is its number.
         """
         subject = f"{shown or path} {value}".rstrip()
         words = f"{said}, or {otherwise}" if otherwise else f"{trouble}; {said}" if trouble else said
         problem = cls(f"{subject}: {words}")
         problem.path, problem.subject, problem.said = path, subject, words
-        problem.consequence, problem.trouble = otherwise, trouble
+        problem.consequence, problem.trouble, problem.bound = otherwise, trouble, bound
         return problem
 
     def is_about(self, path: str) -> bool:
@@ -68,14 +82,15 @@ class Problem(str):
     def reworded(self, reword: Callable[[str], str]) -> Self:
         """Return the sentence with other words, as of the paths of a single disc."""
         problem = type(self)(reword(self))
-        for name in Problem.__annotations__:
+        for name in ("path", "subject", "said", "consequence", "trouble"):
             setattr(problem, name, reword(getattr(self, name)))
+        problem.bound = self.bound
         return problem
 
     def within(self, path: str, words: str) -> Problem:
         """Return the sentence behind words about the field under which it holds, as a temperature."""
         problem = Problem(f"{words}: {self}")
-        problem.path, problem.consequence = path, self.consequence
+        problem.path, problem.consequence, problem.bound = path, self.consequence, self.bound
         problem.trouble = f"{words}: {self.subject}: {self.trouble}" if self.trouble else ""
         return problem
 

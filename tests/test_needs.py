@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import needs
 import pytest
+from refusals import error_says
 
 from ltca.export.simulators.functional_mockup_unit import COMPILERS
 
@@ -66,14 +67,14 @@ def test_a_need_that_the_ci_lacks_was_a_skip(monkeypatch):
     lacks, has = item("calculix"), item("test")
     needs.pytest_collection_modifyitems(config(all_needs=True), [lacks, has])
     assert lacks.added == has.added == []
-    with pytest.raises(pytest.fail.Exception, match="--all-needs: needs CalculiX: apt install calculix-ccx"):
+    with error_says(pytest.fail.Exception, "--all-needs: needs CalculiX: apt install calculix-ccx"):
         needs.pytest_runtest_setup(lacks)
     needs.pytest_runtest_setup(has)
 
 
 @pytest.mark.parametrize("names", [("dosc",), ("docs", "robotic"), ()])
 def test_a_need_that_nothing_provides_is_an_error(names):
-    with pytest.raises(pytest.UsageError, match=r"test_x: needs\('.*'\): neither an extra .* docs"):
+    with error_says(pytest.UsageError, "test_x: needs('", "'): neither an extra ", " docs"):
         reasons(*names)
 
 

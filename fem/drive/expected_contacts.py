@@ -18,7 +18,7 @@ from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield
 from ltca.drive.parts import Drive, contact_modulus
 from ltca.drive.unit_mistakes import names_unit_mistakes
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, Problem
 
 # Contacts under this share of the largest load get elements as if they carried it (design.md: 5 %).
 SMALLEST_LOAD_SHARE = 0.05
@@ -177,7 +177,8 @@ def require_one_disc(drive: Drive) -> None:
     """Raise DriveError for a drive of several discs, where each disc is a problem by itself."""
     count = drive.disc.number_of_discs
     if count != 1:
-        raise DriveError([f"disc.number_of_discs = {count}: must be 1 for finite elements of one disc alone"])
+        said = "must be 1 for finite elements of one disc alone"
+        raise DriveError([Problem.of("disc.number_of_discs", f"= {count}", said, bound=("equal to", 1))])
 
 
 def _minimise(rigid: RigidBodies, stiffness: FloatArray, moment: float) -> tuple[FloatArray, FloatArray]:

@@ -38,7 +38,7 @@ from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, Problem
 
 # The coarse stage looks for loads only: two elements for each half-width, zones for contacts that are open by as
 # much as bodies approach each other, sized for at least a quarter of the largest load.
@@ -209,12 +209,8 @@ def solve_drive(
     """
     require_one_disc(drive)
     if drive.wheel_is_held:
-        raise DriveError(
-            [
-                f"installation.held = {drive.installation.held}: must be pin-shaft for a moment on the wheel that is known; "
-                "where the wheel is held it follows from the solution"
-            ]
-        )
+        said = "must be pin-shaft for a moment on the wheel that is known; where the wheel is held it follows from the solution"
+        raise DriveError([Problem.of("installation.held", f"= {drive.installation.held}", said)])
     (single,) = single_discs(drive)
     moment = drive.wheel_moment(torque)
     return solve_disc(single, crank_angle, moment, options, start=start, rounds=rounds, progress=progress)

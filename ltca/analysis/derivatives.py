@@ -47,7 +47,7 @@ from ltca.equilibrium.balance import Equilibrium, lever_arms
 from ltca.equilibrium.output_angle import wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output, unbalanced_moment
 from ltca.equilibrium.reducer import Reducer
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, Problem
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.quantities import DIMENSIONS, QUANTITIES
 from ltca.reading.changes import with_fields
@@ -435,16 +435,17 @@ class _Field:
         self.balanced, self.path = balanced, path
         value = read_field(balanced.written, path)
         if isinstance(value, bool) or not isinstance(value, float | int) or _unit_of(path) == "":
-            raise DriveError([f"{path}: must be a real number, or an element of an array ({path}.0)"])
+            raise DriveError([Problem.of(path, "", f"must be a real number, or an element of an array ({path}.0)")])
         self.value = float(value)
         if path == "load.torque" and balanced.own_torque is not None:
-            raise DriveError([f"{path}: the analysis has a torque of its own, {balanced.own_torque:g} N·mm"])
+            said = f"the analysis has a torque of its own, {balanced.own_torque:g} N·mm"
+            raise DriveError([Problem.of(path, "", said)])
         if balanced.engine.options["compliance"] != "half-space" and self._reshapes():
-            raise DriveError([f"{path}: reshapes a body, whose influence coefficients are those of the body as it is"])
+            said = "reshapes a body, whose influence coefficients are those of the body as it is"
+            raise DriveError([Problem.of(path, "", said)])
         if has_ring_of_elements(balanced.drive) and self._reshapes_ring():
-            raise DriveError(
-                [f'{path}: reshapes the ring of finite elements, which stays as it is; use ring.model = "beam"']
-            )
+            said = 'reshapes the ring of finite elements, which stays as it is; use ring.model = "beam"'
+            raise DriveError([Problem.of(path, "", said)])
 
     def slopes(self) -> dict[str, Any]:
         """Slopes of pose, arrays and scalars, by name; every position has those of the longest step that its contacts keep to.

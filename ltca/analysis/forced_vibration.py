@@ -34,7 +34,7 @@ from ltca.dynamics.harmonic_balance import HillSystem, UnstableRange, unstable_r
 from ltca.dynamics.kinetics import moving_bodies
 from ltca.dynamics.masses import drive_masses
 from ltca.dynamics.modes import Modes, solve_modes
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, Problem
 from ltca.geometry.placement import position_angles
 from ltca.output.threads import on_one_thread
 
@@ -126,7 +126,8 @@ def forced_vibration(found: Vibration, *, fastest: float | None = None, speeds: 
     """
     drive = found.drive
     if drive.damping is None:
-        raise DriveError(["damping.ratio: must be given (or damping.loss_factor) for a response over speed"])
+        said = "must be given (or damping.loss_factor) for a response over speed"
+        raise DriveError([Problem.of("damping.ratio", "", said)])
     return _respond(found, speed_range(drive)[1] if fastest is None else fastest, speeds)
 
 

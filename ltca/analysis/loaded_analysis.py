@@ -49,7 +49,7 @@ from ltca.equilibrium.partial_balance import (
     balance_what_can_be,
 )
 from ltca.equilibrium.reducer import Reducer, bearing_forces, disc_pressures, disc_torques
-from ltca.errors import ConvergenceError, DriveError, OverloadError, shortened
+from ltca.errors import ConvergenceError, DriveError, OverloadError, Problem, shortened
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.interference import lost_play, preload_warning
 from ltca.geometry.pairs import ContactGeometry
@@ -661,13 +661,12 @@ def require_preload(
     row = loose[int(np.argmax(play[loose]))]
     played = abs(drive.output_per_wheel_angle) * float(play[row]) * ARCMIN
     told = f"has a free play of {played:.3g}′" if played > 0.0 else "is held by parts that only just touch"
-    raise DriveError(
-        [
-            f"{named} = 0 N·mm: must be greater than 0: without a torque the output {told} at crank angle "
-            f"{crank_angle[row]:.6g} rad ({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel "
-            "stand; drives whose parts hold each other everywhere, such as with pins that are too thick, are answered"
-        ]
+    said = (
+        f"must be greater than 0: without a torque the output {told} at crank angle {crank_angle[row]:.6g} rad "
+        f"({loose.size} of {crank_angle.size} positions), and nothing says where discs and wheel stand; drives whose parts "
+        "hold each other everywhere, such as with pins that are too thick, are answered"
     )
+    raise DriveError([Problem.of(named, "= 0 N·mm", said, bound=("greater than", 0.0))])
 
 
 def check_positions(crank_angle: FloatArray) -> FloatArray:

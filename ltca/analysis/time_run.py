@@ -35,7 +35,7 @@ from ltca.dynamics.stiffness import levers
 from ltca.dynamics.teeth import TeethForces
 from ltca.equilibrium.output_angle import crank_lag
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import ConvergenceError, DamagedFileError, DriveError
+from ltca.errors import ConvergenceError, DamagedFileError, DriveError, Problem
 from ltca.mechanics.energy import StoredEnergy
 
 MOTIONS = {
@@ -575,24 +575,22 @@ def _sense(drive: Drive) -> float:
 
 
 def _require_supported(drive: Drive, motion: Motion, course: Course) -> None:
-    problems, stage = [], drive.first_stage
+    problems: list[str] = []
+    stage = drive.first_stage
     if stage is not None and motion.sun is None:
         rigid = "with rigid teeth and cranks a run in time has nothing between sun and cranks"
         if stage.backlash:
-            problems.append(
-                f"first_stage.backlash = {stage.backlash:g} mm: {rigid}; first_stage.mesh_stiffness must be given"
-            )
+            said = f"{rigid}; first_stage.mesh_stiffness must be given"
+            problems.append(Problem.of("first_stage.backlash", f"= {stage.backlash:g} mm", said))
         elif np.any(motion.mesh_by_pose):
-            problems.append(
-                f"carrier.posts: {rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
-            )
+            said = f"{rigid}, and the far flange has no mass; first_stage.mesh_stiffness must be given"
+            problems.append(Problem.of("carrier.posts", "", said))
     if stage is not None and stage.runs_out:
-        problems.append(
-            "first_stage.sun_runout, first_stage.planet_runout: a run in time leaves out teeth that stand off their axes, "
-            "by which cranks turn apart; must be 0"
-        )
+        said = "a run in time leaves out teeth that stand off their axes, by which cranks turn apart; must be 0"
+        both = "first_stage.sun_runout, first_stage.planet_runout"
+        problems.append(Problem.of("first_stage", "", said, shown=both, bound=("equal to", 0.0)))
     if course.driven_by == "torque" and (drive.inertia is None or drive.inertia.input is None):
-        problems.append("inertia.input: must be given for an input that a torque drives, kg·m²")
+        problems.append(Problem.of("inertia.input", "", "must be given for an input that a torque drives, kg·m²"))
     if problems:
         raise DriveError(problems)
 
@@ -605,13 +603,13 @@ def _require_mass(kinetic: KineticEnergy, motion: Motion, basis: FloatArray, lev
     if least[0] > MASSLESS * least[-1]:
         return
     light = [place for place in range(motion.size) if size[place] <= np.sqrt(MASSLESS) * size.max()]
+    lacks = "yields, but has no mass, which a run in time needs"
     named = {
-        motion.sun: "inertia.input: sun of the first stage",
-        motion.twist: "inertia.output: twist of the carrier",
+        motion.sun: Problem.of("inertia.input", "", f"sun of the first stage {lacks}"),
+        motion.twist: Problem.of("inertia.output", "", f"twist of the carrier {lacks}"),
     }
-    words = [named.get(place, f"coordinate {place}") for place in light]
     raise DriveError(
-        [f"{word} yields, but has no mass, which a run in time needs" for word in dict.fromkeys(words)]
+        [named.get(place, f"coordinate {place} {lacks}") for place in light]
         or ["masses: some motion that yields has none, which a run in time needs"]
     )
 

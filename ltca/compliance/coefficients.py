@@ -19,7 +19,7 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.compliance.stress_coefficients import StressCoefficients, read_stress_coefficients
 from ltca.drive.parts import Bodies, Drive, Material
 from ltca.drive.single_discs import nominal_shape
-from ltca.errors import CycloError, DamagedFileError, DriveError
+from ltca.errors import CycloError, DamagedFileError, DriveError, Problem
 from ltca.geometry.boundary_stations import Boundary, boundaries_of, turned_boundaries, weights_of
 from ltca.reading.coefficient_file import quality_warning, read_coefficients, require_places, require_same_bodies
 from ltca.reading.coefficient_schema import flank_clustering, is_solid
@@ -98,7 +98,12 @@ class InfluenceCoefficients:
             ("pin_shaft.number_of_pins", drive.number_of_holes, self.holes),
         )
         if wrong := [
-            f"{name} = {number}: must be {len(walls)}, that of the drive whose influence coefficients are shared"
+            Problem.of(
+                name,
+                f"= {number}",
+                f"must be {len(walls)}, that of the drive whose influence coefficients are shared",
+                bound=("equal to", len(walls)),
+            )
             for name, number, walls in counts
             if number != len(walls)
         ]:

@@ -17,7 +17,7 @@ from ltca.drive.members.width import needs_slices
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import shaft_pin_spring
 from ltca.drive.units.table import label
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 
 ENGINES = {
     "tables": "half-space, tabulated laws (`--method tables`, the default)",
@@ -188,27 +188,31 @@ def _covers(row: Refusal, path: str) -> bool:
     return path == row.path or path.startswith(f"{row.path}.") or of_slices
 
 
-def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[str]:
+def _problems(drive: Drive, row: Refusal, engine: str) -> Iterator[Problem]:
     """One sentence for every place where a drive gives what a row refuses."""
     for path, value, default in given(drive, row.path.split(".")):
         bound, unit = "left out", unit_of(row.path)
+        number: float | None = None
         if row.equals and value is None:
             continue
         if row.equals:
             ((_, accepted, _),) = given(drive, row.equals.split("."))
             if abs(value - accepted) <= ROUNDING * accepted:
                 continue
-            bound = f"{accepted:g}{unit} ({row.equals})"
+            bound, number = f"{accepted:g}{unit} ({row.equals})", accepted
         elif value == default or (row.accepts is not None and row.accepts(value)):
             continue
         elif default is not None and default != () and not is_dataclass(default):
-            bound = f"{default:g}{unit}"
-        named = (
-            f"{path} ({_contents(path, value, row.path)})" if is_dataclass(value) else f"{path} = {shown(value)}{unit}"
-        )
+            bound, number = f"{default:g}{unit}", default
+        held = f"({_contents(path, value, row.path)})" if is_dataclass(value) else f"= {shown(value)}{unit}"
         instead = row.instead if isinstance(row.instead, str) else row.instead(drive)
         instead = f"; {instead}" if instead else ""
-        yield f"{named}: must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}"
+        yield Problem.of(
+            path,
+            held,
+            f"must be {bound} for {_IN_MESSAGES[engine]} ({row.reason}){instead}",
+            bound=None if number is None else ("equal to", number),
+        )
 
 
 def given(part: Any, names: Sequence[str], above: str = "") -> Iterator[tuple[str, Any, Any]]:

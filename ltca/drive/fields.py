@@ -19,7 +19,7 @@ from ltca.drive.declaration import ANY as ANY, INDICES, LEFT_OUT, Field, declare
 from ltca.drive.members.width import FEWEST_SLICES, needs_slices
 from ltca.drive.parts import Drive, Friction
 from ltca.drive.single_discs import single_discs
-from ltca.errors import DriveError, nearest
+from ltca.errors import DriveError, Problem, nearest
 
 OWN = {
     "disc.runout": "disc.of.N.runout",
@@ -166,9 +166,9 @@ def element_count(drive: Drive, path: str) -> int | None:
     """
     kind = field_kind(path)
     if kind is None:
-        raise DriveError([f"{path}: {not_a_field(drive, path)}"])
+        raise DriveError([Problem.of(path, "", not_a_field(drive, path))])
     if missing := missing_part(drive, path):
-        raise DriveError([f"{path}: there is no {missing} in this drive"])
+        raise DriveError([Problem.of(path, "", f"there is no {missing} in this drive")])
     drive, path = _of_disc(drive, path)
     if not kind.is_array:
         return None
@@ -275,7 +275,7 @@ def _of_disc(drive: Drive, path: str) -> tuple[Drive, str]:
         return drive, path
     table, number, name = found
     if (problem := no_entry(drive, table, number)) is not None:
-        raise DriveError([f"{path}: {problem}"])
+        raise DriveError([Problem.of(path, "", problem)])
     if table in LISTED:
         return drive, path
     disc, crank = divmod(number, drive.crank.number) if table == "crank.of" else (number, 0)
@@ -343,7 +343,7 @@ def read_field(drive: Drive, path: str) -> Any:
         for name in place[2].split("."):
             value = None if value is None else getattr(value, name)
         if value is None:
-            raise DriveError([f"{path}: is left out in this drive"])
+            raise DriveError([Problem.of(path, "", "is left out in this drive")])
         return value
     if place is not None:
         return _own_value(drive, place[1], place[2], count)
@@ -351,7 +351,7 @@ def read_field(drive: Drive, path: str) -> Any:
     for name in (_FOLLOWS.get(path) or path).split("."):
         value = getattr(value, name)
     if value is None:
-        raise DriveError([f"{path}: is left out in this drive"])
+        raise DriveError([Problem.of(path, "", "is left out in this drive")])
     if count is not None and not value:
         return (0.0,) * count
     return value

@@ -44,4 +44,5 @@ def torque_problem(drive: Drive, path: str, torque: float, *, zero: bool, shown:
             f"must be {'0 or ' if zero else ''}at least {least:.2g} N·mm in this drive: below, the round-off "
             f"of the pin circle radius is more than {ROUND_OFF_BOUND:g} of the loads",
             shown=shown,
+            bound=("at least", least),
         )

@@ -9,7 +9,7 @@ from typing import Any
 
 from ltca.drive.declaration import naming_fields
 from ltca.drive.fields import LISTED, field_kind, field_kinds
-from ltca.errors import did_you_mean, nearest, printable, shortened
+from ltca.errors import Problem, did_you_mean, nearest, printable, shortened
 
 
 def describe_mistakes(
@@ -26,21 +26,19 @@ def describe_mistakes(
     for place, detail in found:
         if detail["type"] in UNKNOWN and (name := nearest(place[-1], [p[-1] for p in missing if p[:-1] == place[:-1]])):
             meant[place] = (*place[:-1], name)
-    told = []
+    told: list[str] = []
     shaft = (*map(str, prefix), "pin_shaft")
     if [name for name in PIN_SHAFT if (*shaft, name) in missing and (*shaft, name) not in meant.values()] == list(
         PIN_SHAFT
     ):
         words = f"{', '.join(PIN_SHAFT[:-1])} and {PIN_SHAFT[-1]}"
-        told.append(
-            f"{_path(shaft)}: {words} are missing; without them the drive has no pin shaft, and nothing of it is used"
-        )
+        said = f"{words} are missing; without them the drive has no pin shaft, and nothing of it is used"
+        told.append(Problem.of(_path(shaft), "", said))
         found = [(place, detail) for place, detail in found if place[:-1] != shaft or place[-1] not in PIN_SHAFT]
     for place, detail in found:
         if place in meant:
-            told.append(
-                f"{_words(place, len(prefix))}: is not a field; did you mean `{meant[place][-1]}`, which is missing?"
-            )
+            said = f"is not a field; did you mean `{meant[place][-1]}`, which is missing?"
+            told.append(Problem.of(_path(place), "", said, shown=_words(place, len(prefix))))
         elif place not in meant.values():
             told.append(_sentence(place, _words(place, len(prefix)), detail, known))
     return told
@@ -76,33 +74,39 @@ def _words(place: tuple[str, ...], given: int) -> str:
     return _path(place)
 
 
-def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[str] | None) -> str:
+def _sentence(place: tuple[str, ...], path: str, detail: Any, known: Sequence[str] | None) -> Problem:
+    value, said = _said(place, path, detail, known)
+    return Problem.of(_path(place), value, said, shown=path)
+
+
+def _said(place: tuple[str, ...], path: str, detail: Any, known: Sequence[str] | None) -> tuple[str, str]:
+    """The value of a mistake, empty where it has none, and what is said of it."""
+    value = f"= {shortened(detail['input'])}"
     match detail["type"]:
         case "missing" | "missing_argument" | "missing_keyword_only_argument":
-            return f"{path}: is missing"
+            return "", "is missing"
         case "unexpected_keyword_argument" | "extra_forbidden" if path in GONE and known is None:
-            return f"{path}: {GONE[path]}"
+            return "", GONE[path]
         case "unexpected_keyword_argument" | "extra_forbidden":
             siblings = fields_of(".".join(place[:-1])) if known is None else known
             where = "the drive definition" if known is None else "such a table"
-            return f"{path}: is not a field of {where}{did_you_mean(place[-1], siblings)}"
+            return "", f"is not a field of {where}{did_you_mean(place[-1], siblings)}"
         case "dataclass_type" | "dataclass_exact_type" | "model_type" | "dict_type":
-            return f"{path} = {shortened(detail['input'])}: must be a table"
+            return value, "must be a table"
         case "tuple_type" if path in LISTED:
-            return f"{path} = {shortened(detail['input'])}: must be an array of tables, written [[{path}]]"
+            return value, f"must be an array of tables, written [[{path}]]"
         case "tuple_type":
-            return f"{path} = {shortened(detail['input'])}: must be an array of numbers{_unit_of(_path(place))}"
+            return value, f"must be an array of numbers{_unit_of(_path(place))}"
         case "literal_error":
             expected = detail["ctx"]["expected"]
             choices = [name.strip("' ") for name in expected.replace(" or ", ",").split(",")]
             meant = did_you_mean(detail["input"], choices) if isinstance(detail["input"], str) else ""
-            return f"{path} = {shortened(detail['input'])}: must be {expected}{meant}{HINTS.get(place[-1], '')}"
+            return value, f"must be {expected}{meant}{HINTS.get(place[-1], '')}"
         case "bool_type":
-            return f"{path} = {shortened(detail['input'])}: must be true or false"
+            return value, "must be true or false"
         case "int_type" | "int_parsing" | "int_from_float" | "int_parsing_size":
-            return f"{path} = {shortened(detail['input'])}: must be a whole number"
-    message = str(detail["msg"]).replace("Input should be", "must be")
-    return f"{path} = {shortened(detail['input'])}: {message}"
+            return value, "must be a whole number"
+    return value, str(detail["msg"]).replace("Input should be", "must be")
 
 
 def _unit_of(path: str) -> str:

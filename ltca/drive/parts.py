@@ -59,7 +59,7 @@ from ltca.drive.members.ring import Ring as Ring, RingBolts as RingBolts
 from ltca.drive.members.width import Contact as Contact, Inclination as Inclination
 from ltca.drive.names import Name
 from ltca.drive.units.quantities import COUNT, grows
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 
 SAME_PART = 1e-9
 """Angle below which two flanks are equal, rad: round-off of a phase, which moves a flank by much less than a nanometre."""
@@ -136,7 +136,10 @@ class Disc:
     def phase(self) -> float:
         """ζ of the one disc, rad; DriveError for several discs, or values per disc."""
         if self.number_of_discs != 1 or not all(entry.of_bores_alone for entry in self.of):
-            raise DriveError([f"disc.number_of_discs = {self.number_of_discs}: must be 1 here, and disc.of left out"])
+            said = "must be 1 here, and disc.of left out"
+            raise DriveError(
+                [Problem.of("disc.number_of_discs", f"= {self.number_of_discs}", said, bound=("equal to", 1))]
+            )
         return self.disc_phases[0]
 
     @property
@@ -398,7 +401,8 @@ class Drive:
     def require_torque(self, what: str, torque: float | None = None) -> Drive:
         """Return the drive itself; DriveError where the torque, its load by default, is zero, at which `what` says nothing."""
         if (self.load.torque if torque is None else torque) == 0.0:
-            raise DriveError([f"load.torque = 0 N·mm: must be greater than 0 for {what}"])
+            said = f"must be greater than 0 for {what}"
+            raise DriveError([Problem.of("load.torque", "= 0 N·mm", said, bound=("greater than", 0.0))])
         return self
 
     def load_words(self, torque: float | None = None) -> str:

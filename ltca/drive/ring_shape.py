@@ -87,6 +87,7 @@ def ring_mesh_problems(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be at least {sharp:g} mm for finite elements of the ring",
             otherwise="metal between two seats ends too sharp for a mesh",
+            bound=("at least", sharp),
         )
     if inner > short:
         yield Problem.of(
@@ -94,6 +95,7 @@ def ring_mesh_problems(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be at most {short:g} mm for finite elements of the ring",
             otherwise="the seats are too flat to lead the pins",
+            bound=("at most", short),
         )
     between = 2.0 * circle * sin(pi / wheel.number_of_pins) - 2.0 * seat
     if between <= LEAST_METAL * seat and inner < circle:
@@ -102,6 +104,7 @@ def ring_mesh_problems(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be at least {circle:g} mm (pin_wheel.pin_circle_radius) for finite elements of the ring: "
             f"{between:.4g} mm of metal are left between two seats",
+            bound=("at least", circle),
         )
     bolts, patch = ring.bolts, bolt_patch_radius(drive)
     if bolts is None or ring.flange == "built-in":

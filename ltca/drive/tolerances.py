@@ -30,7 +30,7 @@ from ltca.drive.fields import (
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
-from ltca.errors import DriveError, printable, shortened
+from ltca.errors import DriveError, Problem, printable, shortened
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, config=ConfigDict(extra="forbid"))
@@ -162,11 +162,11 @@ def nothing_scatters(drive: Drive, path: str) -> str | None:
 
 def find_absent(tolerances: Tolerances, drives: Collection[Drive]) -> list[str]:
     """Return the problems of tolerances on fields that none of the drives has, one sentence each."""
-    found = []
+    found: list[str] = []
     for path in tolerances:
         problems = [nothing_scatters(drive, path) for drive in drives]
         if problems and problems[0] is not None and None not in problems:
-            found.append(f"tolerances.{path}: {problems[0]}")
+            found.append(Problem.of(f"tolerances.{path}", "", problems[0]))
     return found
 
 
@@ -209,17 +209,16 @@ class Factors:
         """
         found: list[tuple[str, int | None]] = []
         centres: list[float] = []
-        problems = []
+        problems: list[str] = []
         each = _per_disc(drive, tolerances)
         for path in each:
             if (problem := nothing_scatters(drive, path)) is not None:
-                problems.append(f"tolerances.{path}: {problem}")
+                problems.append(Problem.of(f"tolerances.{path}", "", problem))
                 continue
             count = element_count(drive, path)
             if count == 0:
-                problems.append(
-                    f"tolerances.{path}: has no elements to scatter in this drive; give disc.profile_errors.orders"
-                )
+                said = "has no elements to scatter in this drive; give disc.profile_errors.orders"
+                problems.append(Problem.of(f"tolerances.{path}", "", said))
             found.append((path, count))
             value = read_field(drive, path)
             centres += [value] if count is None else value

@@ -37,7 +37,7 @@ from ltca.dynamics.masses import (
 )
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_springs
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
@@ -203,7 +203,8 @@ def require_masses(masses: DriveMasses) -> DriveMasses:
     """Return the masses themselves; DriveError with every density that is not given."""
     missing = masses.without_density
     if missing:
-        raise DriveError([f"{path}: must be given for inertias, kg/m³ (a named material has it)" for path in missing])
+        said = "must be given for inertias, kg/m³ (a named material has it)"
+        raise DriveError([Problem.of(path, "", said) for path in missing])
     return masses
 
 

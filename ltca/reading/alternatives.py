@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Self
+from typing import NamedTuple, Self
 
 from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
 from ltca.errors import Problem
+
+
+class Bound(NamedTuple):
+    """Bound of a length, mm, with what is said beside it."""
+
+    relation: str
+    number: float
+    beside: str = ""
+
+    def __str__(self) -> str:
+        """The bound as it stands in a sentence."""
+        return f"{self.relation} {self.number:.6g} mm{self.beside}"
 
 
 class Alternatives(Problem):
@@ -22,7 +34,7 @@ class Alternatives(Problem):
     --------
     >>> from ltca.reading.drive_file import load_drive
     >>> drive = load_drive("paper").cases["CS-1"]
-    >>> bounds = {"crank.eccentricity": "at most 3 mm", "pin_wheel.pin_circle_radius": "at least 80 mm"}
+    >>> bounds = {"crank.eccentricity": Bound("at most", 3.0), "pin_wheel.pin_circle_radius": Bound("at least", 80.0)}
     >>> problem = Alternatives.between(drive, bounds, "the flank has loops")
     >>> problem
     'crank.eccentricity = 4 mm: must be at most 3 mm or pin_wheel.pin_circle_radius at least 80 mm, or the flank has loops'
@@ -38,15 +50,17 @@ class Alternatives(Problem):
         return self.other_first.path
 
     @classmethod
-    def between(cls, drive: Drive, bounds: dict[str, str], otherwise: str) -> Self:
+    def between(cls, drive: Drive, bounds: dict[str, Bound], otherwise: str) -> Self:
         """Return the sentence on the lengths of a drive that have these bounds, two by path, and what is wrong beyond them."""
         (first, bound), (other, other_bound) = bounds.items()
 
-        def parts(path: str, its_bound: str, beside: str, bound_beside: str) -> tuple[str, str, str]:
+        def parts(path: str, its_bound: Bound, beside: str, bound_beside: Bound) -> tuple[str, str, str]:
             return path, f"= {read_field(drive, path):g} mm", f"must be {its_bound} or {beside} {bound_beside}"
 
-        problem = cls.of(*parts(first, bound, other, other_bound), otherwise=otherwise)
-        problem.other_first = Problem.of(*parts(other, other_bound, first, bound), otherwise=otherwise)
+        problem = cls.of(*parts(first, bound, other, other_bound), otherwise=otherwise, bound=bound[:2])
+        problem.other_first = Problem.of(
+            *parts(other, other_bound, first, bound), otherwise=otherwise, bound=other_bound[:2]
+        )
         return problem
 
     def reworded(self, reword: Callable[[str], str]) -> Self:
@@ -56,9 +70,10 @@ class Alternatives(Problem):
         return problem
 
 
-def bounded(drive: Drive, bounds: dict[str, str], otherwise: str) -> Problem:
+def bounded(drive: Drive, bounds: dict[str, Bound], otherwise: str) -> Problem:
     """Return the sentence on the length of a drive that has a bound, by path, or on either of two, and what is wrong beyond."""
     if len(bounds) == 2:
         return Alternatives.between(drive, bounds, otherwise)
     ((path, bound),) = bounds.items()
-    return Problem.of(path, f"= {read_field(drive, path):g} mm", f"must be {bound}", otherwise=otherwise)
+    value = f"= {read_field(drive, path):g} mm"
+    return Problem.of(path, value, f"must be {bound}", otherwise=otherwise, bound=bound[:2])

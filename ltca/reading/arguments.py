@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ltca.errors import DriveError, shortened
+from ltca.errors import DriveError, Problem, shortened
 from ltca.output.file_names import file_word
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 SHIPPED_DRIVES = ("paper", "robot-joint", "rv", "sleeved")
 """Names of the drives that ship with the package, each that of a file in ``ltca/drives``."""
 DRIVE = f"drive file (TOML), or the name of a shipped drive: {', '.join(SHIPPED_DRIVES)}"
+ALIKE = "must be the same in all drives that are analysed together"
+"""What is said of a field that all drives of an analysis share."""
 LONGEST_PART = 255
 """Largest number of bytes in the name of a file or folder on common file systems."""
 LONGEST_COUNT = 19
@@ -51,13 +53,10 @@ def compliance_for(drives: Iterable[Drive], *, method: str | None, contacts: str
     known = tuple(drives)
     found = list(dict.fromkeys(drive.analysis.compliance for drive in known))
     if len(found) > 1:
-        raise DriveError(
-            [f"analysis.compliance = {', '.join(found)}: must be the same in all drives that are analysed together"]
-        )
+        raise DriveError([Problem.of("analysis.compliance", f"= {', '.join(found)}", ALIKE)])
     if found[0] == "half-space" and any(drive.analysis.bodies != "plane" for drive in known):
-        raise DriveError(
-            ["analysis.bodies = 'solid': has no effect with analysis.compliance = 'half-space'; leave one of them out"]
-        )
+        said = "has no effect with analysis.compliance = 'half-space'; leave one of them out"
+        raise DriveError([Problem.of("analysis.bodies", "= 'solid'", said)])
     return found[0]
 
 
@@ -69,9 +68,7 @@ def bodies_for(drives: Iterable[Drive], compliance: str) -> str | None:
     if compliance == "half-space":
         return None
     if len(found) > 1:
-        raise DriveError(
-            [f"analysis.bodies = {', '.join(found)}: must be the same in all drives that are analysed together"]
-        )
+        raise DriveError([Problem.of("analysis.bodies", f"= {', '.join(found)}", ALIKE)])
     return found[0]
 
 

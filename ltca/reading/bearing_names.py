@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
@@ -21,7 +22,7 @@ from ltca.drive.members.bearings import (
 )
 from ltca.drive.members.preload import Force
 from ltca.drive.mistakes import describe_mistakes
-from ltca.errors import DriveError, shortened
+from ltca.errors import DriveError, Problem, shortened
 
 BEARING = "bearing"
 CLEARANCE_CLASS = "clearance_class"
@@ -122,7 +123,9 @@ class BearingNames:
         found = []
         for problem in problems:
             for text, name in self.stands_for.items():
-                problem = re.sub(rf"{re.escape(text)}(?![0-9.e])( mm)?", rf'\g<0> (of bearing "{name}")', problem)
+                value = re.compile(rf"{re.escape(text)}(?![0-9.e])( mm)?")
+                add_name = partial(value.sub, rf'\g<0> (of bearing "{name}")')
+                problem = problem.reworded(add_name) if isinstance(problem, Problem) else add_name(problem)
             found.append(problem)
         return found
 

@@ -78,7 +78,7 @@ def with_fields(drive: Drive, values: Mapping[str, Any], *, check: bool = True) 
                 raise DriveError([f"{path}: {parent} has no element {last}"])
             arrays[parent][int(last)] = value
         elif field_kind(path) is None:
-            raise DriveError([f"{path}: {not_a_field(drive, path)}"])
+            raise DriveError([Problem.of(path, "", not_a_field(drive, path))])
         else:
             whole[path] = value
             missing = missing_part(drive, path)
@@ -203,7 +203,7 @@ def _with_own(drive: Drive, own: Mapping[tuple[str, int], Mapping[str, Any]], pr
             entries[number] = _replaced(entries[number], _nested(values), f"{table}.{number}.", problems)
             continue
         if (problem := no_entry(drive, table, number)) is not None:
-            problems.append(f"{table}.{number}: {problem}")
+            problems.append(Problem.of(f"{table}.{number}", "", problem))
             continue
         tree: dict[str, Any] = {}
         for name, value in values.items():

@@ -66,14 +66,21 @@ class Cause:
         """Logarithm of the ratio of bound and value."""
         return abs(log(self.bound / self.value))
 
-    def bounded(self) -> str:
-        """Return the bound in words, rounded to the sound side."""
+    def rounded(self) -> tuple[str, float]:
+        """Return the relation and the number of the bound, rounded to the sound side."""
         least = self.bound > self.value
         if self.alone:
-            return f"{self.bound:g}"
+            return "equal to", self.bound
+        relation = "at least" if least else "at most"
         if self.path in CHANGED_COUNTS:
-            return f"{'at least' if least else 'at most'} {self.bound:g}"
-        return f"at least {-rounded_down(-self.bound):g} mm" if least else f"at most {rounded_down(self.bound):g} mm"
+            return relation, self.bound
+        return relation, -rounded_down(-self.bound) if least else rounded_down(self.bound)
+
+    def bounded(self) -> str:
+        """Return the bound in words."""
+        relation, number = self.rounded()
+        words = f"{number:g}" if relation == "equal to" else f"{relation} {number:g}"
+        return words if self.alone or self.path in CHANGED_COUNTS else f"{words} mm"
 
     def mends(self, drive: Drive) -> bool:
         """Tell whether a similar drive is sound with the field at its bound, or a little beyond."""
@@ -86,7 +93,8 @@ class Cause:
         """Return the sentence on the field that stands for these contradictions; `instead` is another field with its bound."""
         value = f"= {self.value:g}" + ("" if self.path in CHANGED_COUNTS else " mm")
         reasons = "; ".join(dict.fromkeys(problem.reason(self.path) for problem in problems[:2]))
-        return Problem.of(self.path, value, f"must be {self.bounded()}{instead} for the rest of the drive: {reasons}")
+        said = f"must be {self.bounded()}{instead} for the rest of the drive: {reasons}"
+        return Problem.of(self.path, value, said, bound=self.rounded())
 
 
 def explain_contradictions(drive: Drive, problems: list[Problem]) -> list[Problem]:
@@ -117,9 +125,10 @@ def find_cause(drive: Drive, problems: list[Problem]) -> tuple[list[Problem], Me
         if getattr(getattr(drive, part), smaller) > getattr(getattr(drive, part), larger) and _sound_swapped(
             drive, part
         ):
-            values = [f"= {getattr(getattr(drive, part), name):g} mm" for name in (smaller, larger)]
-            said = f"must be less than {larger} {values[1]}; the two seem to be swapped"
-            return [Problem.of(f"{part}.{smaller}", values[0], said)], partial(_sound_swapped, part=part)
+            value, most = (getattr(getattr(drive, part), name) for name in (smaller, larger))
+            said = f"must be less than {larger} = {most:g} mm; the two seem to be swapped"
+            swapped = Problem.of(f"{part}.{smaller}", f"= {value:g} mm", said, bound=("less than", most))
+            return [swapped], partial(_sound_swapped, part=part)
     if len(problems) == 1 and has_loops(drive) and _sound_without_loops(drive):
         return problems, _sound_without_loops
     causes = sorted(_causes(drive), key=lambda cause: cause.distance)

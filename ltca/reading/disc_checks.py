@@ -17,7 +17,7 @@ from ltca.errors import Problem, counted
 from ltca.geometry.flank import CurveFrame, FlankProfile, trochoid_curvature
 from ltca.geometry.interference import ROUNDING, drawn_interference
 from ltca.geometry.rotation import unit
-from ltca.reading.alternatives import bounded
+from ltca.reading.alternatives import Bound, bounded
 from ltca.reading.width_checks import find_lead_problems, slope_bound
 
 ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yield elastically"
@@ -61,13 +61,15 @@ def _flank(drive: Drive) -> Iterator[Problem]:
             "disc.equidistant_offset",
             f"= {disc.equidistant_offset:g} mm",
             f"must be greater than {-wheel.pin_radius:g} mm (minus the pin radius)",
+            bound=("greater than", -wheel.pin_radius),
         )
         return
     smallest_radius = _smallest_path_radius(wheel.pin_circle_radius + disc.shifting_offset, e, drive.reduction_ratio)
     if smallest_radius <= profile.offset:
-        of_pins = (
-            f"less than {smallest_radius - disc.equidistant_offset:.6g} mm (smallest radius of the pin-centre path on its "
-            "convex side less the equidistant offset)"
+        of_pins = Bound(
+            "less than",
+            smallest_radius - disc.equidistant_offset,
+            " (smallest radius of the pin-centre path on its convex side less the equidistant offset)",
         )
         yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, "the flank is undercut")
     if profile.root_radius <= 0.0:
@@ -84,6 +86,7 @@ def _flank(drive: Drive) -> Iterator[Problem]:
             f"= {disc.equidistant_offset:g} mm",
             f"must be at least {disc.equidistant_offset + overlap:.6g} mm with this shifting offset",
             otherwise=f"disc and pins overlap by {overlap:.4g} mm, more than {bound:g} mm, {ELASTIC}",
+            bound=("at least", disc.equidistant_offset + overlap),
         )
 
 
@@ -140,10 +143,10 @@ def _crosses_itself(pin_circle_radius: float, shifted_radius: float, pitch_radiu
 def _loops(drive: Drive) -> Problem:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
     most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
-    bounds, otherwise = {"crank.eccentricity": f"at most {most:g} mm{_with_hole(drive, most)}"}, "the flank has loops"
+    bounds = {"crank.eccentricity": Bound("at most", most, _with_hole(drive, most))}
     if isfinite(circle):
-        bounds["pin_wheel.pin_circle_radius"] = f"at least {-rounded_down(-circle):g} mm"
-    return bounded(drive, bounds, otherwise)
+        bounds["pin_wheel.pin_circle_radius"] = Bound("at least", -rounded_down(-circle))
+    return bounded(drive, bounds, "the flank has loops")
 
 
 def hole_that_fits(drive: Drive, eccentricity: float) -> float:
@@ -161,19 +164,19 @@ def _leads(drive: Drive, eccentricity: float) -> bool:
     return fits and shaft.hole_radius - shaft.pin_radius <= MOST_HOLE_PLAY * eccentricity
 
 
-def _or_eccentricity(drive: Drive, path: str, bound: str, largest: float, otherwise: str) -> Problem:
+def _or_eccentricity(drive: Drive, path: str, bound: Bound, largest: float, otherwise: str) -> Problem:
     """Message about a length and its bound, or the largest eccentricity, unless that is zero or holes would have to change."""
     bounds, most = {path: bound}, rounded_down(largest)
     if most > 0.0 and _leads(drive, most):
-        bounds["crank.eccentricity"] = f"at most {most:g} mm"
+        bounds["crank.eccentricity"] = Bound("at most", most)
     return bounded(drive, bounds, otherwise)
 
 
-def _or_eccentricity_and_hole(drive: Drive, path: str, bound: str, otherwise: str) -> Problem:
+def _or_eccentricity_and_hole(drive: Drive, path: str, bound: Bound, otherwise: str) -> Problem:
     """Message about a length and its bound, or the eccentricity that mends it as well with the hole radius that goes with it."""
     bounds, most = {path: bound}, rounded_down(largest_eccentricity(drive))
     if most > 0.0:
-        bounds["crank.eccentricity"] = f"at most {most:g} mm{_with_hole(drive, most)}"
+        bounds["crank.eccentricity"] = Bound("at most", most, _with_hole(drive, most))
     return bounded(drive, bounds, otherwise)
 
 
@@ -213,6 +216,7 @@ def _pins(drive: Drive) -> Iterator[Problem]:
             f"= {wheel.pin_radius:g} mm",
             f"must be less than {room:.6g} mm",
             otherwise="neighbouring pins overlap",
+            bound=("less than", room),
         )
     shaft = drive.pin_shaft
     if shaft is None:
@@ -224,6 +228,7 @@ def _pins(drive: Drive) -> Iterator[Problem]:
             f"= {shaft.pin_radius:g} mm",
             f"must be less than {room:.6g} mm",
             otherwise="neighbouring pins overlap",
+            bound=("less than", room),
         )
 
 
@@ -232,13 +237,14 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
     space = bearing.outer_race_radius - bearing.inner_race_radius
     if space <= 0.0:
         fitting = bearing.outer_race_radius - 2.0 * bearing.roller_radius
-        bound = f"at most {fitting:g} mm" if fitting > 0.0 else f"less than {bearing.outer_race_radius:g} mm"
+        largest = Bound("at most", fitting) if fitting > 0.0 else Bound("less than", bearing.outer_race_radius)
         yield Problem.of(
             "crank_bearing.inner_race_radius",
             f"= {bearing.inner_race_radius:g} mm",
-            f"must be {bound}",
+            f"must be {largest}",
             otherwise="the rollers have no room below the outer race (outer_race_radius = "
             f"{bearing.outer_race_radius:g} mm)",
+            bound=largest[:2],
         )
     elif (overlap := drawn_interference(drive).rollers) > (elastic := deviation_bound(drive)) + ROUNDING:
         yield Problem.of(
@@ -246,6 +252,7 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
             f"= {bearing.roller_radius:g} mm",
             f"must be at most {0.5 * space:.6g} mm",
             otherwise=f"the rollers overlap the races by {overlap:.4g} mm, more than {elastic:g} mm, {ELASTIC}",
+            bound=("at most", 0.5 * space),
         )
     elif 2.0 * bearing.roller_radius < 0.9 * space:
         yield Problem.of(
@@ -253,6 +260,7 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
             f"= {bearing.roller_radius:g} mm",
             f"must be at least {0.45 * space:.6g} mm",
             otherwise="the rollers are loose between the races (give clearance as clearance.bearing)",
+            bound=("at least", 0.45 * space),
         )
     room = (bearing.inner_race_radius + bearing.roller_radius) * sin(pi / bearing.number_of_rollers)
     if bearing.roller_radius >= room:
@@ -266,12 +274,14 @@ def _bearing(drive: Drive) -> Iterator[Problem]:
             "crank_bearing.roller_length",
             f"= {drive.roller_length:g} mm",
             f"must be at most {drive.disc.thickness:g} mm, the thickness of the disc, which it is when left out",
+            bound=("at most", drive.disc.thickness),
         )
     if drive.clearance.bearing > bearing.roller_radius:
         yield Problem.of(
             "clearance.bearing",
             f"= {drive.clearance.bearing:g} mm",
             f"must be at most {bearing.roller_radius:g} mm, the roller radius",
+            bound=("at most", bearing.roller_radius),
         )
 
 
@@ -287,9 +297,11 @@ def _holes(drive: Drive) -> Iterator[Problem]:
     overlap = fitting - drive.hole_radius
     if overlap > most + ROUNDING:
         play_of_sleeve = " - the play of its sleeve" if shaft.seat_play else ""
-        bound = (
-            f"at least {fitting:.6g} mm (pin_shaft.pin_radius + crank.eccentricity{play_of_sleeve}, and half the clearance "
-            "unless clearance.pin_hole has it)"
+        bound = Bound(
+            "at least",
+            fitting,
+            f" (pin_shaft.pin_radius + crank.eccentricity{play_of_sleeve}, and half the clearance unless clearance.pin_hole "
+            "has it)",
         )
         otherwise = (
             f"the hole overlaps its pin by {overlap:.4g} mm, more than {most:g} mm, {ELASTIC} "
@@ -303,35 +315,35 @@ def _holes(drive: Drive) -> Iterator[Problem]:
             f"= {shaft.hole_radius:g} mm",
             f"must be at most {shaft.pin_radius + MOST_HOLE_PLAY * e:g} mm, pin radius plus 1.5 eccentricities",
             otherwise="the pins cannot lead the disc",
+            bound=("at most", shaft.pin_radius + MOST_HOLE_PLAY * e),
         )
     if drive.clearance.pin_hole > 0.5 * e:
         yield Problem.of(
             "clearance.pin_hole",
             f"= {drive.clearance.pin_hole:g} mm",
             f"must be at most {0.5 * e:g} mm, half the eccentricity",
+            bound=("at most", 0.5 * e),
         )
     radius, circle = drive.hole_radius, shaft.pin_circle_radius
     # A hole has to clear its pin by the eccentricity: where it cannot shrink enough, the circle it stands on is wrong.
 
-    def hole_or_circle(excess: float, trouble: str, circle_bound: str) -> Problem:
-        bound = shaft.hole_radius - excess
-        if bound > fitting or play + shaft.seat_play < e - ROUNDING:
-            said = f"must be less than {max(bound, 0.0):.6g} mm"
-            return Problem.of("pin_shaft.hole_radius", f"= {shaft.hole_radius:g} mm", said, trouble=trouble)
-        return Problem.of("pin_shaft.pin_circle_radius", f"= {circle:g} mm", f"must be {circle_bound}", trouble=trouble)
+    def hole_or_circle(excess: float, trouble: str, circle_bound: Bound) -> Problem:
+        largest = shaft.hole_radius - excess
+        path, value, bound = "pin_shaft.pin_circle_radius", circle, circle_bound
+        if largest > fitting or play + shaft.seat_play < e - ROUNDING:
+            path, value, bound = "pin_shaft.hole_radius", shaft.hole_radius, Bound("less than", max(largest, 0.0))
+        return Problem.of(path, f"= {value:g} mm", f"must be {bound}", trouble=trouble, bound=bound[:2])
 
     wall = circle - radius - drive.bore_radius
     if wall <= 0.0 and drive.crank.number == 1:
-        yield hole_or_circle(
-            -wall, f"holes cut into the bore by {-wall:.6g} mm", f"greater than {circle - wall:.6g} mm"
-        )
+        yield hole_or_circle(-wall, f"holes cut into the bore by {-wall:.6g} mm", Bound("greater than", circle - wall))
     sine = sin(pi / shaft.number_of_pins)
     wall = 2.0 * (circle * sine - radius)
     if wall <= 0.0:
         yield hole_or_circle(
             -0.5 * wall,
             f"neighbouring holes cut into each other by {-wall:.6g} mm",
-            f"greater than {radius / sine:.6g} mm",
+            Bound("greater than", radius / sine),
         )
     root = FlankProfile.of_drive(drive).root_radius
     wall = root - circle - radius
@@ -340,7 +352,7 @@ def _holes(drive: Drive) -> Iterator[Problem]:
         yield hole_or_circle(
             -wall,
             f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
-            f"less than {root - radius:.6g} mm",
+            Bound("less than", root - radius),
         )
     elif wall <= 0.0 and drive.pin_wheel.pin_circle_radius + drive.disc.shifting_offset > 0.0:
         # No circle has room for the holes; an offset that leaves no pin circle is reported with the flank.
@@ -350,12 +362,14 @@ def _holes(drive: Drive) -> Iterator[Problem]:
             f"= {wheel.pin_circle_radius:g} mm",
             f"must be greater than {wheel.pin_circle_radius - wall:.6g} mm",
             trouble=f"holes cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
+            bound=("greater than", wheel.pin_circle_radius - wall),
         )
     if drive.bore_radius >= root > 0.0:
         yield Problem.of(
             "crank_bearing.outer_race_radius",
             f"= {drive.crank_bearing.outer_race_radius:g} mm",
             f"must be less than {root:.6g} mm, the root radius of the disc",
+            bound=("less than", root),
         )
 
 
@@ -381,14 +395,23 @@ def _length_profiles(drive: Drive) -> Iterator[Problem]:
                 f"{path}.end_relief_length",
                 f"= {profile.end_relief_length:g} mm",
                 f"must be at most {0.5 * length:g} mm, half the contact length",
+                bound=("at most", 0.5 * length),
             )
         for name in ("crown_drop", "end_relief_depth"):
             if (drop := getattr(profile, name)) > 0.1 * radius:
                 yield Problem.of(
-                    f"{path}.{name}", f"= {drop:g} mm", f"must be at most {0.1 * radius:g} mm, a tenth of the radius"
+                    f"{path}.{name}",
+                    f"= {drop:g} mm",
+                    f"must be at most {0.1 * radius:g} mm, a tenth of the radius",
+                    bound=("at most", 0.1 * radius),
                 )
         if profile.logarithmic_factor > 100.0:
-            yield Problem.of(f"{path}.logarithmic_factor", f"= {profile.logarithmic_factor:g}", "must be at most 100")
+            yield Problem.of(
+                f"{path}.logarithmic_factor",
+                f"= {profile.logarithmic_factor:g}",
+                "must be at most 100",
+                bound=("at most", 100.0),
+            )
 
 
 def _bores(drive: Drive) -> Iterator[Problem]:
@@ -406,6 +429,7 @@ def _bores(drive: Drive) -> Iterator[Problem]:
             value,
             f"must be greater than {radius / sine:.6g} mm",
             trouble=f"neighbouring bores of {crank.number} cranks cut into each other by {-wall:.6g} mm",
+            bound=("greater than", radius / sine),
         )
     root = FlankProfile.of_drive(drive).root_radius
     wall = root - circle - radius
@@ -415,6 +439,7 @@ def _bores(drive: Drive) -> Iterator[Problem]:
             value,
             f"must be less than {root - radius:.6g} mm",
             trouble=f"bores cut through the root circle of the disc (radius {root:.6g} mm) by {-wall:.6g} mm",
+            bound=("less than", root - radius),
         )
     shaft = drive.pin_shaft
     if shaft is None:
@@ -489,6 +514,7 @@ def find_deviation_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {value:g} mm",
                 f"must be at most {limit:g} mm in size, a tenth of the smallest pin or roller radius and half the "
                 "eccentricity",
+                bound=("at most", limit),
             )
     yield from find_lead_problems(drive.disc, bound)
     yield from _profile_errors(drive, bound)
@@ -508,6 +534,7 @@ def part_errors(
                 f"{path}.{name}",
                 f"holds {worst:g} mm",
                 f"must be at most {bound:g} mm in size, a tenth of the smallest pin or roller radius",
+                bound=("at most", bound),
             )
     for name in ("inclination_x", "inclination_y"):
         values = getattr(errors, name, ())
@@ -546,12 +573,18 @@ def _profile_errors(drive: Drive, bound: float) -> Iterator[Problem]:
         at = np.array(errors.parameter)
         if at.size < 3 or at[0] < 0.0 or at[-1] >= 2.0 * pi or not np.all(np.diff(at) > 0.0):
             yield Problem.of(
-                f"{path}.parameter", "", "must be at least 3 angles ascending from 0 rad or more to less than 2π rad"
+                f"{path}.parameter",
+                "",
+                "must be at least 3 angles ascending from 0 rad or more to less than 2π rad",
+                bound=("at least", 3.0),
             )
     size = sum(abs(value) for value in (*errors.cosine, *errors.sine)) + max(map(abs, errors.deviation), default=0.0)
     if size > bound:
         yield Problem.of(
-            path, f"reaches {size:g} mm", f"must be at most {bound:g} mm, a tenth of the smallest pin or roller radius"
+            path,
+            f"reaches {size:g} mm",
+            f"must be at most {bound:g} mm, a tenth of the smallest pin or roller radius",
+            bound=("at most", bound),
         )
 
 
@@ -607,6 +640,7 @@ def _hollow(drive: Drive, designed: float, actual: float, theta: float) -> Itera
         f"the flank has a hollow of radius {actual:.6g} mm at θ = {theta:.4g} rad, must be greater than "
         f"{largest:g} mm, the radius of the largest pin",
         otherwise="pins touch it at two points at once",
+        bound=("greater than", largest),
     )
 
 

@@ -125,7 +125,10 @@ def _ring(drive: Drive) -> Iterator[Problem]:
     seat = seat_radius(wheel)
     if outer <= inner:
         yield Problem.of(
-            "ring.outer_radius", f"= {outer:g} mm", f"must be greater than ring.inner_radius = {inner:g} mm"
+            "ring.outer_radius",
+            f"= {outer:g} mm",
+            f"must be greater than ring.inner_radius = {inner:g} mm",
+            bound=("greater than", inner),
         )
         return
     if inner <= circle - seat:
@@ -134,6 +137,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be greater than {circle - seat:g} mm, where the wheel pins begin "
             "(pin_wheel.pin_circle_radius less the radius of the seat): they would not stand out of the ring",
+            bound=("greater than", circle - seat),
         )
     if inner > circle + seat:
         yield Problem.of(
@@ -141,6 +145,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"= {inner:g} mm",
             f"must be at most {circle + seat:g} mm, where the wheel pins end (pin_wheel.pin_circle_radius "
             "plus the radius of the seat): they would not touch the ring",
+            bound=("at most", circle + seat),
         )
     if outer <= circle + seat:
         yield Problem.of(
@@ -148,6 +153,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"= {outer:g} mm",
             f"must be greater than {circle + seat:g} mm, where the seats of the pins end "
             "(pin_wheel.pin_circle_radius plus the radius of the seat)",
+            bound=("greater than", circle + seat),
         )
     if ring.flange == "one-side":
         yield Problem.of(
@@ -162,6 +168,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"= {own:g} 1/K",
             f"must equal materials.wheel_seat.thermal_expansion = {slots:g} 1/K, or leave one of them out: "
             "pin circle, slots and ring grow together",
+            bound=("equal to", slots),
         )
     if ring.model == "fe" and circle - seat < inner <= circle + seat and outer > circle + seat:
         yield from ring_mesh_problems(drive)
@@ -179,6 +186,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             "ring.bolts.circle_radius",
             f"= {bolts.circle_radius:g} mm",
             f"must be at least ring.inner_radius = {inner:g} mm",
+            bound=("at least", inner),
         )
     if bolts.circle_radius > LARGEST_BOLT_CIRCLE * outer:
         yield Problem.of(
@@ -187,6 +195,7 @@ def _ring(drive: Drive) -> Iterator[Problem]:
             f"must be at most {LARGEST_BOLT_CIRCLE * outer:g} mm, {LARGEST_BOLT_CIRCLE:g} times "
             "ring.outer_radius: bolts stand in the ring",
             otherwise="in lugs on it",
+            bound=("at most", LARGEST_BOLT_CIRCLE * outer),
         )
 
 
@@ -215,6 +224,7 @@ def _first_stage(drive: Drive) -> Iterator[Problem]:
             "must be at most 0 beside first_stage: cranks that float in their bearings leave the planets no "
             "place in the mesh; give crank.support.preload or a clearance of 0 or less, or "
             "installation.first_stage_ratio in place of the teeth",
+            bound=("at most", 0.0),
         )
     if crank.circle_radius is None:
         return
@@ -250,6 +260,7 @@ def _first_stage(drive: Drive) -> Iterator[Problem]:
             "first_stage.backlash",
             f"= {stage.backlash:g} mm",
             f"must be less than {most:.4g} mm, a quarter of the pitch of the teeth",
+            bound=("less than", most),
         )
     yield from _runout_of_teeth(stage, crank.number, distance)
 
@@ -275,6 +286,7 @@ def _runout_of_teeth(stage: FirstStage, cranks: int, distance: float) -> Iterato
             f"must be at least {closed:.4g} mm beside {named}: teeth that stand off their axes close the "
             "backlash by 2 tan α_wt of both eccentricities",
             otherwise="they jam",
+            bound=("at least", closed),
         )
 
 
@@ -356,6 +368,7 @@ def _crank_support(drive: Drive) -> Iterator[Problem]:
             "crank.support.diameter",
             f"= {support.diameter:g} mm",
             f"must be at most {bore:g} mm, the diameter of the inner race on it",
+            bound=("at most", bore),
         )
     planes = drive.disc.disc_planes
     reach = end - start
@@ -402,6 +415,7 @@ def _carrier(drive: Drive) -> Iterator[Problem]:
             f"= {posts.size:g} mm",
             f"must be less than {2.0 * room:.6g} mm, the distance of {posts.number} posts on a circle of "
             f"radius {posts.radius:g} mm (carrier.posts.number, carrier.posts.radius)",
+            bound=("less than", 2.0 * room),
         )
     reach = 2.0 * max(abs(plane) for plane in drive.disc.disc_planes) + drive.disc.thickness
     if posts.length is not None and posts.length < reach - ROUNDING * max(reach, 1.0):
@@ -410,6 +424,7 @@ def _carrier(drive: Drive) -> Iterator[Problem]:
             f"= {posts.length:g} mm",
             f"must be at least {reach:.6g} mm",
             otherwise="the discs are not between the flanges (disc.planes, disc.thickness)",
+            bound=("at least", reach),
         )
     if shaft is None:
         return
@@ -496,7 +511,10 @@ def _loose_or_tight(
     ):
         if value is not None and abs(value) > most:
             yield Problem.of(
-                f"{path}.{name}", f"= {value:g} mm", f"must be at most {most:g} mm in size, half the eccentricity"
+                f"{path}.{name}",
+                f"= {value:g} mm",
+                f"must be at most {most:g} mm in size, half the eccentricity",
+                bound=("at most", most),
             )
     if preload is None:
         return
@@ -706,6 +724,7 @@ def _per_disc(drive: Drive) -> Iterator[Problem]:
                 "disc.planes",
                 f"holds {before:g} and {after:g} mm",
                 f"must be at least {thickness:g} mm apart, the thickness of a disc",
+                bound=("at least", thickness),
             )
     # One disc may be one of several checked alone; where shafts or pins bend, the axis has its zero at supports and beams.
     shaft = drive.pin_shaft
@@ -714,7 +733,10 @@ def _per_disc(drive: Drive) -> Iterator[Problem]:
     if discs > 1 and not any(placed) and abs(sum(planes)) > 1e-6 * len(planes) * thickness:
         mean = sum(planes) / len(planes)
         yield Problem.of(
-            "disc.planes", f"has the mean {mean:g} mm", "must be 0 mm, planes are centred on 0 where nothing bends"
+            "disc.planes",
+            f"has the mean {mean:g} mm",
+            "must be 0 mm, planes are centred on 0 where nothing bends",
+            bound=("equal to", 0.0),
         )
     yield from _eccentric_problems(drive)
     bound = min(deviation_bound(drive), 0.5 * drive.crank.eccentricity) / drive.crank.eccentricity
@@ -726,6 +748,7 @@ def _per_disc(drive: Drive) -> Iterator[Problem]:
                 f"must be at most {bound:.4g} rad in size: the eccentric's centre moves by a tenth of the smallest pin or roller "
                 "radius, or by half the eccentricity",
                 shown=f"{_entry(drive, number)}: phase_error",
+                bound=("at most", bound),
             )
 
 
@@ -751,6 +774,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {entry.disc}",
                 f"must be less than {discs}, the number of discs, which count from 0",
                 shown=f"{entry_words(number)}: disc",
+                bound=("less than", discs),
             )
         if entry.crank is not None and entry.crank >= cranks:
             yield Problem.of(
@@ -758,6 +782,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {entry.crank}",
                 f"must be less than {cranks}, crank.number; cranks count from 0",
                 shown=f"{entry_words(number)}: crank",
+                bound=("less than", cranks),
             )
         if entry.crank is None and cranks > 1:
             yield Problem.of(
@@ -791,6 +816,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {entry.eccentricity_error:g} mm",
                 f"must be at most {size:g} mm in size, a tenth of the smallest pin or roller radius and half the eccentricity",
                 shown=f"{_entry(drive, number)}: eccentricity_error",
+                bound=("at most", size),
             )
 
 
@@ -903,7 +929,11 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
     named, value = f"{path}.seat.{hole}", f"= {bore:g} mm"
     if play <= ROUNDING:
         yield Problem.of(
-            named, value, f"must be greater than {inner:g} mm ({pin})", otherwise=f"the pin has no play in its {what}"
+            named,
+            value,
+            f"must be greater than {inner:g} mm ({pin})",
+            otherwise=f"the pin has no play in its {what}",
+            bound=("greater than", inner),
         )
     elif kind == "slot" and bore >= 2.0 * outer - ROUNDING:
         yield Problem.of(
@@ -911,10 +941,15 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
             value,
             f"must be less than {2.0 * outer:g} mm, twice {pin}",
             otherwise=f"the pin is no guide any more (its effective radius {2.0 * outer - bore:g} mm is none)",
+            bound=("less than", 2.0 * outer),
         )
     elif kind == "sleeve" and bore >= outer - ROUNDING:
         yield Problem.of(
-            named, value, f"must be less than {outer:g} mm ({path}.pin_radius)", otherwise="the sleeve has no wall"
+            named,
+            value,
+            f"must be less than {outer:g} mm ({path}.pin_radius)",
+            otherwise="the sleeve has no wall",
+            bound=("less than", outer),
         )
     elif play > largest + ROUNDING:
         part_of = "the eccentricity" if most == 1.0 else "half the eccentricity"
@@ -923,6 +958,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
             value,
             f"must be at most {inner + largest:g} mm, {pin} and {part_of}",
             otherwise=f"the pins cannot lead the disc (play {play:g} mm)",
+            bound=("at most", inner + largest),
         )
     elif kind == "slot" and 0.5 * growth >= play - ROUNDING:
         yield Problem.of(
@@ -930,6 +966,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
             f"holds {growth:g} mm",
             f"must be less than {2.0 * play:.6g} mm, twice the play of {path}.seat.radius",
             otherwise="the pin does not fit its slot",
+            bound=("less than", 2.0 * play),
         )
     elif kind == "slot" and bore >= 2.0 * outer - shrinkage - ROUNDING:
         yield Problem.of(
@@ -937,6 +974,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
             f"holds {-shrinkage:g} mm",
             f"must be greater than {bore - 2.0 * outer:.6g} mm",
             otherwise=f"the slot ({path}.seat.radius) is twice as wide as the pin",
+            bound=("greater than", bore - 2.0 * outer),
         )
     elif kind == "sleeve" and outer - 0.5 * shrinkage <= bore + ROUNDING:
         yield Problem.of(
@@ -944,6 +982,7 @@ def _seat(part: PinWheel | PinShaft, path: str, most: float, eccentricity: float
             f"holds {-shrinkage:g} mm",
             f"must be greater than {2.0 * (bore - outer):.6g} mm",
             otherwise=f"the sleeve ({path}.seat.bore_radius) has no wall",
+            bound=("greater than", 2.0 * (bore - outer)),
         )
 
 
@@ -956,6 +995,7 @@ def _slots(wheel: PinWheel) -> Iterator[Problem]:
             f"= {radius:g} mm",
             f"must be less than {room:.6g} mm",
             otherwise="neighbouring slots cut into each other",
+            bound=("less than", room),
         )
 
 
@@ -978,6 +1018,7 @@ def _core(wheel: PinWheel) -> Iterator[Problem]:
             f"must be at most {MOST_OF_BODY * smallest:g} mm, {MOST_OF_BODY:g} of the radius of the smallest "
             "pin (pin_wheel.pin_radius, pin_wheel.pin_errors.diameter)",
             otherwise="too little of it deforms",
+            bound=("at most", MOST_OF_BODY * smallest),
         )
 
 
@@ -989,6 +1030,7 @@ def _race_bore(drive: Drive) -> Iterator[Problem]:
             f"= {bore:g} mm",
             f"must be at most {most:g} mm, {MOST_OF_BODY:g} of crank_bearing.inner_race_radius",
             otherwise="too little of the race deforms",
+            bound=("at most", most),
         )
 
 
@@ -997,7 +1039,10 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
     half, thickness, planes = 0.5 * span, drive.disc.thickness, drive.disc.disc_planes
     if span > (most := range_of("mm")[1]):  # left out it follows from the discs
         yield Problem.of(
-            f"{path}.beam.span", f"= {span:g} mm, from the first disc to the last", f"must be at most {most:g} mm"
+            f"{path}.beam.span",
+            f"= {span:g} mm, from the first disc to the last",
+            f"must be at most {most:g} mm",
+            bound=("at most", most),
         )
         return
     disc = max(range(len(planes)), key=lambda number: abs(planes[number]))
@@ -1012,9 +1057,15 @@ def _beam(drive: Drive, part: PinWheel | PinShaft, beam: WheelPinBeam | ShaftPin
             f"must be at least {2.0 * reach:.6g} mm",
             otherwise=f"{which} from {low:.6g} to {high:.6g} mm (disc.planes, disc.thickness) is not between the {held} "
             f"at ±{half:g} mm; left out, it is as long as the discs with their gaps",
+            bound=("at least", 2.0 * reach),
         )
     sleeved = part.seat.kind == "sleeve" and part.seat.bore_radius is not None
     widest = 2.0 * ((part.seat.bore_radius or 0.0) if sleeved else part.pin_radius)
     of = f"the bore of its sleeve ({path}.seat.bore_radius)" if sleeved else f"that of the pin ({path}.pin_radius)"
     if beam.diameter is not None and beam.diameter > widest + ROUNDING:
-        yield Problem.of(f"{path}.beam.diameter", f"= {beam.diameter:g} mm", f"must be at most {widest:g} mm, {of}")
+        yield Problem.of(
+            f"{path}.beam.diameter",
+            f"= {beam.diameter:g} mm",
+            f"must be at most {widest:g} mm, {of}",
+            bound=("at most", widest),
+        )

@@ -45,7 +45,7 @@ def _find_at_temperatures(drive: Drive) -> list[Problem]:
     try:
         warm = warm_drive(drive)
     except DriveError as error:
-        return [Problem(problem) for problem in error.problems]
+        return [problem if isinstance(problem, Problem) else Problem(problem) for problem in error.problems]
     problems = find_contradictions(warm)
     if not problems or drive.temperature is None:
         return problems

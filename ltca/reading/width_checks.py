@@ -37,7 +37,9 @@ def find_width_problems(drive: Drive) -> Iterator[Problem]:
                 yield Problem.of(f"{path}.inclination.{name}", f"= {angle:g} rad", slope_bound())
     play, most = drive.disc.axial_play, drive.disc.thickness
     if play is not None and play > most:
-        yield Problem.of(PLAY, f"= {play:g} mm", f"must be at most {most:g} mm, the thickness of the disc")
+        yield Problem.of(
+            PLAY, f"= {play:g} mm", f"must be at most {most:g} mm, the thickness of the disc", bound=("at most", most)
+        )
 
 
 def _without_slices(drive: Drive) -> Iterator[Problem]:
@@ -102,6 +104,7 @@ def find_lead_problems(disc: Disc, bound: float) -> Iterator[Problem]:
                 f"= {drop:g} mm",
                 f"must be at most {bound:g} mm, a tenth of the smallest pin or roller radius; a plain number is "
                 'in mm, micrometres are written "5 µm"',
+                bound=("at most", bound),
             )
     if abs(disc.lead_slope) > LARGEST_SLOPE:
         yield Problem.of("disc.lead_slope", f"= {disc.lead_slope:g} rad", slope_bound())
@@ -111,6 +114,7 @@ def find_lead_problems(disc: Disc, bound: float) -> Iterator[Problem]:
             "disc.lead_relief_length",
             f"= {length:g} mm",
             f"must be at most {half:g} mm, half the thickness of the disc",
+            bound=("at most", half),
         )
     if length and not depth:
         yield Problem.of(

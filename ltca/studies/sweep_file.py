@@ -37,7 +37,7 @@ from ltca.drive.members.bearings import bought_size
 from ltca.drive.mistakes import describe_mistakes
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import quantity
-from ltca.errors import MOST_TOLD, DriveError, did_you_mean, shortened
+from ltca.errors import MOST_TOLD, DriveError, Problem, did_you_mean, shortened
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.changes import BEARING, with_fields
 from ltca.reading.drive_file import listed, load_drive
@@ -199,9 +199,8 @@ def _factors(table: Mapping[str, Any], drive: Drive, cases: Mapping[str, Drive],
                 found.append(SweepFactor(path=path, levels=tuple(names)))
             continue
         if path.partition(".")[0] == "analysis":
-            reader.problems.append(
-                f"factors.{path}: cannot vary, all samples of a study are analysed alike (--compliance)"
-            )
+            said = "cannot vary, all samples of a study are analysed alike (--compliance)"
+            reader.problems.append(Problem.of(f"factors.{path}", "", said))
             continue
         if refused := bought_size(drive.crank_bearing, path):
             reader.problems.append(f"factors.{refused}")
@@ -229,7 +228,8 @@ def _require_possible_grid(design: Any, factors: Mapping[str, Any], reader: _Rea
         samples *= count if isinstance(count, int) and 0 < count <= MOST_LEVELS else 1
     if samples > MOST_SAMPLES:
         told = f"{samples}" if samples < 10**15 else f"{samples:.3g}"
-        reader.problems.append(f"factors: make a grid of {told} samples, must be at most {MOST_SAMPLES}")
+        said = f"make a grid of {told} samples, must be at most {MOST_SAMPLES}"
+        reader.problems.append(Problem.of("factors", "", said, bound=("at most", MOST_SAMPLES)))
         reader.check()
 
 
@@ -348,7 +348,11 @@ def _design(table: Any, factors: tuple[SweepFactor, ...], reader: _Reader) -> Sw
             reader.problems.append("factors: must all have equally many values in a list")
         return SweepDesign(factors=factors, kind=kind)
     reader.problems += [
-        f"factors.{path}: takes whole numbers, {kind} draws fractions between low and high; give an array of values, or levels"
+        Problem.of(
+            f"factors.{path}",
+            "",
+            f"takes whole numbers, {kind} draws fractions between low and high; give an array of values, or levels",
+        )
         for path in ranges
         if _is_whole(path)
     ]

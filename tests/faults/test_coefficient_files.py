@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 import shutil
 
 import h5py
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.commands.program import main
 from ltca.compliance import coefficient_files
@@ -93,8 +93,9 @@ def test_any_bit_of_a_number_is_seen(drive, sound, tmp_path):
     for _ in range(10):
         place = first + int(rng.integers(size))
         path.write_bytes(content[:place] + bytes([content[place] ^ (1 << int(rng.integers(8)))]) + content[place + 1 :])
-        with pytest.raises(DamagedFileError, match=r"checksum|no finite numbers|cannot be read"):
+        with pytest.raises(DamagedFileError) as caught:
             load_coefficients(path, drive)
+        assert any(words in str(caught.value) for words in ("checksum", "no finite numbers", "cannot be read"))
 
 
 def scaled(name, factor):
@@ -146,7 +147,7 @@ CONTENTS = {
     "external link": (linked, "is a link to other.nc, which is not followed"),
     "soft link": (soft, "is a link to another place"),
     "external storage": (elsewhere, "lies in another file"),
-    "72 TB": (huge, r"it declares 7\.2e\+13 bytes"),
+    "72 TB": (huge, "it declares 7.2e+13 bytes"),
 }
 
 
@@ -183,8 +184,8 @@ def test_a_file_of_other_supports_is_refused(attribute, field, default, drive, t
     own = closed_form(drive)
     own.attrs[attribute] = other  # closed forms of half-planes; laws of rings are not what is looked at
     write_netcdf(own, path)
-    told = rf"belongs to {re.escape(field)} = {other:g} mm, not to the {default:g} mm of paper: give the drive that"
-    with pytest.raises(CycloError, match=told):
+    told = f"belongs to {field} = {other:g} mm, not to the {default:g} mm of paper: give the drive that"
+    with error_says(CycloError, told):
         load_coefficients(path, drive, lawful=False)
 
 
@@ -220,7 +221,7 @@ def test_half_widths_and_labels_are_checked(change, told, drive, tmp_path):
     write_netcdf(sound, path)
     load_coefficients(path, drive)
     write_netcdf(change(sound), path)
-    with pytest.raises(DamagedFileError, match=told) as refused:
+    with error_says(DamagedFileError, told) as refused:
         load_coefficients(path, drive)
     assert "\n" not in str(refused.value)
 
@@ -235,7 +236,7 @@ def test_wrong_contents_are_refused(name, drive, sound, tmp_path):
     with h5py.File(path, "r+") as file:
         del file.attrs[CHECKSUM]
         change(file)
-    with pytest.raises(DamagedFileError, match=message) as refused:
+    with error_says(DamagedFileError, message) as refused:
         load_coefficients(path, drive)
     assert "\n" not in str(refused.value)
 
@@ -291,7 +292,7 @@ def test_a_cached_file_whose_checksum_was_changed_with_it_is_found_out(name, shi
     contents = read_coefficients(sound, lawful=False).to_xarray().copy(deep=True)
     change(contents, near_field_unit(contents, "disc"))
     path = write_coefficients(contents, tmp_path / "cached.nc")
-    with pytest.raises(DamagedFileError, match=law) as refused:
+    with error_says(DamagedFileError, law) as refused:
         load_coefficients(path, drive, lawful="quick")
     assert str(refused.value).startswith(f"{path}: breaks laws")
     assert "\n" not in str(refused.value)

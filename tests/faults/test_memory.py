@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from refusals import error_is
 
 from fem.body.sparse_factor import enough_memory, factor_sparse
 from fem.coefficients import dataset
@@ -194,7 +195,11 @@ def test_a_solver_without_memory_is_told_in_a_line(error, monkeypatch):
 
     assert factor_sparse(matrix()).solve(np.ones(30)) == pytest.approx(np.full(30, 0.5))
     monkeypatch.setattr(spla, "splu", splu)
-    with pytest.raises(FaultError, match=r"^memory is not enough to solve 30 unknowns: .*\(ulimit -v, container\)$"):
+    sentence = (
+        "memory is not enough to solve 30 unknowns: take a coarser mesh (--size where the command has it), or raise the limit "
+        "of memory (ulimit -v, container)"
+    )
+    with error_is(FaultError, sentence):
         factor_sparse(matrix())
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.commands.program import _told, main
 from ltca.errors import DriveError
@@ -34,16 +35,16 @@ def test_the_samples_of_a_grid_are_bounded_before_its_levels_are_looked_at(monke
     """A grid of 14 factors of 100,000 levels ran for minutes without a word."""
     monkeypatch.setattr("ltca.studies.sweep_file._factor", lambda *words: pytest.fail("a level was looked at"))
     levels = {name: {"low": 1.0, "high": 2.0, "levels": 100_000} for name in FIELDS}
-    with pytest.raises(DriveError, match=r"factors: make a grid of 1e\+70 samples, must be at most 100000000"):
+    with refused_field("factors", "", "make a grid of 1e+70 samples", bound=("at most", 100_000_000)):
         parse_sweep({"factors": levels}, "paper")
-    with pytest.raises(DriveError, match="make a grid of 1000000000 samples"):
+    with refused_field("factors", "", "make a grid of 1000000000 samples", bound=("at most", 100_000_000)):
         parse_sweep({"factors": {name: [1.0] * 1000 for name in FIELDS[:3]}}, "paper")
 
 
 def test_of_many_levels_the_ends_are_asked():
     levels = {"load.torque": {"low": 1.0, "high": 2.0, "levels": 1000}}
     assert parse_sweep({"factors": levels}, "paper").design.samples == 1000
-    with pytest.raises(DriveError, match=r"factors\.load\.torque"):
+    with error_says(DriveError, "factors.load.torque"):
         parse_sweep({"factors": {"load.torque": [1.0] * 999 + [-1.0]}}, "paper")
 
 
@@ -51,9 +52,9 @@ def test_values_of_a_drive_are_bounded_before_they_are_read(monkeypatch):
     """Two million numbers took 4 s of processor and 20 s."""
     with monkeypatch.context() as patched:
         patched.setattr("ltca.reading.toml_text.tomllib.loads", lambda text: pytest.fail("it was read"))
-        with pytest.raises(DriveError, match="holds some 2000000 values: must be at most 500000"):
+        with error_says(DriveError, "holds some 2000000 values: must be at most 500000"):
             parse_drive("a = [" + "0.001," * 1_999_999 + "]")
-    with pytest.raises(DriveError, match="an array has 30000 entries: must be at most 20000"):
+    with error_says(DriveError, "an array has 30000 entries: must be at most 20000"):
         parse_drive(shipped_drive() + "\n[other]\na = [" + "0," * 30_000 + "]")
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
@@ -34,30 +35,39 @@ ANSWERED = (
     "small_30_teeth", "toolkit_14_to_1", "web_generator_11_to_1", "web_generator_39_to_1", "web_generator_7_to_1",
     "web_generator_9_to_1",
 )  # fmt: skip
+SINE = np.sin(np.pi / np.array([60.0, 8.0]))
 REFUSED = {
     # e z_P = 1.5708 · 50 = 78.5 mm is beyond the pin circle of 50 mm.
     "flank_with_loops": (
-        r"crank\.eccentricity = 1\.5708 mm: must be at most 0\.9\d+ mm \(with pin_shaft\.hole_radius = 3\.9\d+ mm\) or "
-        r"pin_wheel\.pin_circle_radius at least 8\d\.\d+ mm, or the flank has loops"
+        "crank.eccentricity", "= 1.5708 mm", ("at most", pytest.approx(0.95, abs=0.05)),
+        ["(with pin_shaft.hole_radius = 3.9", " mm) or pin_wheel.pin_circle_radius at least 8", "the flank has loops"],
     ),
     "holes_of_pin_diameter_plus_eccentricity": (
-        r"pin_shaft\.hole_radius = 2\.25 mm: must be at least 2\.5 mm \(pin_shaft\.pin_radius \+ crank\.eccentricity, .*\) or "
-        r"crank\.eccentricity at most 0\.25 mm, or the hole overlaps its pin by 0\.25 mm"
+        "pin_shaft.hole_radius", "= 2.25 mm", ("at least", pytest.approx(2.5)),
+        [
+            "(pin_shaft.pin_radius + crank.eccentricity, ",
+            ") or crank.eccentricity at most 0.25 mm, or the hole overlaps its pin by 0.25 mm",
+        ],
     ),
     # 40 mm · sin 3°
-    "pins_that_collide": r"pin_wheel\.pin_radius = 2\.5 mm: must be less than 2\.09344 mm, or neighbouring pins overlap",
+    "pins_that_collide": (
+        "pin_wheel.pin_radius", "= 2.5 mm", ("less than", pytest.approx(40.0 * SINE[0])), ["neighbouring pins overlap"],
+    ),
     # 14 + 3 − 16 mm
-    "holes_into_the_bore": r"pin_shaft\.pin_circle_radius = 16 mm: holes cut into the bore by 1 mm; must be greater than 17 mm",
+    "holes_into_the_bore": (
+        "pin_shaft.pin_circle_radius", "= 16 mm", ("greater than", pytest.approx(17.0)), ["holes cut into the bore by 1 mm"],
+    ),
     # 2 (5.75 − 15 sin 22.5°) mm
     "holes_into_holes": (
-        r"pin_shaft\.pin_circle_radius = 15 mm: neighbouring holes cut into each other by 0\.019497 mm; must be greater than 15"
+        "pin_shaft.pin_circle_radius", "= 15 mm", ("greater than", pytest.approx(5.75 / SINE[1])),
+        ["neighbouring holes cut into each other by 0.019497 mm"],
     ),
-}
+}  # fmt: skip
 WAITING = {
-    "bearing_wider_than_the_disc": r"crank_bearing\.bearing = 'HK0810': is a drawn cup needle bearing, whose cup would sit in",
-    "ball_bearing_6902": r"crank_bearing\.bearing = '6902': is a ball bearing",
-    "plain_eccentric": r"crank_bearing\.kind: is not a field of the drive definition",
-    "every_second_pin_left_out": r"pin_wheel\.left_out: is not a field of the drive definition",
+    "bearing_wider_than_the_disc": "crank_bearing.bearing = 'HK0810': is a drawn cup needle bearing, whose cup would sit in",
+    "ball_bearing_6902": "crank_bearing.bearing = '6902': is a ball bearing",
+    "plain_eccentric": "crank_bearing.kind: is not a field of the drive definition",
+    "every_second_pin_left_out": "pin_wheel.left_out: is not a field of the drive definition",
 }
 """What cannot be expressed yet, and how that is told."""
 NOTES = {
@@ -114,11 +124,17 @@ def test_answered_without_a_false_note(name):
     assert [part for part in true if not any(part in note for note in told)] == []
 
 
-@pytest.mark.parametrize(("name", "message"), {**REFUSED, **WAITING}.items(), ids=[*REFUSED, *WAITING])
-def test_refused_with_field_and_size(name, message):
-    with pytest.raises(DriveError) as caught:
+@pytest.mark.parametrize("name", REFUSED)
+def test_refused_with_field_and_size(name):
+    path, value, bound, said = REFUSED[name]
+    with refused_field(path, value, *said, bound=bound):
         drive_of(name)
-    assert re.search(message, str(caught.value)), caught.value
+
+
+@pytest.mark.parametrize("name", WAITING)
+def test_refused_as_not_known_yet(name):
+    with error_says(DriveError, WAITING[name]):
+        drive_of(name)
 
 
 def checks_of(name, positions=4):

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import error_says, refused_field
 
 import ltca
 from ltca.analysis.engines import engine_named
@@ -56,10 +57,10 @@ def test_front_door_names():
         ({"hole_near_field": False}, "hole_near_field: has no effect with compliance half-space"),
         ({"compliance": ltca.HalfSpace(), "method": "tables"}, "method: is an option of the engine"),
         ({"compliance": 3}, "must be an engine or one of"),
-        ({"torque": -1.0}, r"torque = -1: must be finite and at least 0 N·mm"),
+        ({"torque": -1.0}, "torque = -1: must be finite and at least 0 N·mm"),
         ({"torque": float("nan")}, "must be finite"),
-        ({"torque": "377 mm"}, r"torque = '377 mm': must have the unit N·mm or another of torque"),
-        ({"torque": "-3 N m"}, r"torque = '-3 N m': must be at least 0 N·mm \(load.direction turns it\)"),
+        ({"torque": "377 mm"}, "torque = '377 mm': must have the unit N·mm or another of torque"),
+        ({"torque": "-3 N m"}, "torque = '-3 N m': must be at least 0 N·mm (load.direction turns it)"),
         ({"torque": True}, "must be a number in N·mm"),
         ({"crank_angle": []}, "must be one row of at least one angle"),
         ({"crank_angle": [[0.0]]}, "must be one row of at least one angle"),
@@ -80,7 +81,7 @@ def test_front_door_names():
     ],
 )
 def test_what_makes_no_sense_is_refused_at_once(options, message):
-    with pytest.raises(DriveError, match=message):
+    with error_says(DriveError, message):
         ltca.analyse(DRIVE, **options)
 
 
@@ -95,7 +96,7 @@ def test_quantities_are_given_as_texts():
 
 
 def test_a_drive_file_is_no_drive():
-    with pytest.raises(DriveError, match=r"not a DriveFile; a drive file has them in \.cases"):
+    with error_says(DriveError, "not a DriveFile; a drive file has them in .cases"):
         ltca.analyse(load_drive("paper"))
 
 
@@ -228,9 +229,9 @@ def test_the_name_of_a_case_is_no_field():
     plain = replace(drive, case="nominal")
     assert drive == plain
     assert (drive.fingerprint(), hash(drive)) == (plain.fingerprint(), hash(plain))
-    with pytest.raises(DriveError, match="case: is not a field"):
+    with refused_field("case", "", "is not a field"):
         with_fields(drive, {"case": "CS-1"})
-    with pytest.raises(DriveError, match=r"case A: case: must be left out; `name` is"):
+    with error_says(DriveError, "case A: case: must be left out; `name` is"):
         parse_drive(shipped_drive("rv") + '\n[[case]]\nname = "A"\ncase = "B"\n')
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says, refused_field
 
 from fem.coefficients.dataset import derive_coefficients
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
@@ -18,7 +19,7 @@ from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.balance import lever_arms
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import CycloError, DriveError
+from ltca.errors import CycloError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.flank import FlankProfile
@@ -316,13 +317,11 @@ def test_a_file_of_several_cranks_is_refused_by_a_drive_of_one(small, tmp_path):
     several = single_discs(kind(small, "holes"))[0]
     alone = replace(several.crank, number=1, circle_radius=None, angle=0.0)
     closed_form_coefficients(several, half_width=0.05, depth=300.0).to_netcdf(tmp_path / "c.nc", engine="h5netcdf")
-    with pytest.raises(CycloError, match=r"differs from rv in crank.number 3 \(here none\), crank.circle_radius 18"):
+    with error_says(CycloError, "differs from rv in crank.number 3 (here none), crank.circle_radius 18"):
         load_coefficients(tmp_path / "c.nc", replace(several, crank=alone))
 
 
 def test_coefficients_of_other_numbers_of_bores_are_refused(small):
     lent = without_coupling(single_discs(small)[0])
-    with pytest.raises(
-        DriveError, match=r"crank.number = 2: must be 3, that of the drive whose influence coefficients"
-    ):
+    with refused_field("crank.number", "= 2", "that of the drive whose influence coefficients", bound=("equal to", 3)):
         lent.lent_to(with_fields(single_discs(small)[0], {"crank.number": 2}, check=False))

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused_field
 
 from ltca.analysis.derivatives import derivatives
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
@@ -284,8 +285,11 @@ def test_the_ring_grows_by_its_own_expansion():
     warm = warm_drive(drive)
     assert warm.pin_wheel.pin_circle_radius == pytest.approx(60.0 * (1.0 + 2.3e-5 * 40.0), rel=1e-12)
     assert warm.pin_wheel.pin_radius == pytest.approx(2.5 * (1.0 + 1.15e-5 * 40.0), rel=1e-12)
-    with pytest.raises(
-        DriveError, match=r"ring\.material\.thermal_expansion = 2\.3e-05 1/K: must equal materials\.wheel_seat"
+    with refused_field(
+        "ring.material.thermal_expansion",
+        "= 2.3e-05 1/K",
+        "must equal materials.wheel_seat",
+        bound=("equal to", 1.2e-5),
     ):
         with_fields(drive, {"materials.wheel_seat.thermal_expansion": 1.2e-5})
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
@@ -232,7 +233,7 @@ def test_bores_stand_clear_of_every_hole(rv, hole):
     for side in (touch, -touch):
         beyond, within = 120.0 * hole + side * 1.001, 120.0 * hole + side * 0.999
         with_fields(drive, {"crank.angle": float(np.radians(beyond))})
-        with pytest.raises(DriveError, match=r"a bore and a hole .* cut into each other"):
+        with error_says(DriveError, "a bore and a hole ", " cut into each other"):
             with_fields(drive, {"crank.angle": float(np.radians(within))})
     distance = np.sqrt(42.0**2 + 45.0**2 - 2.0 * 42.0 * 45.0 * np.cos(np.radians(25.0)))
     with pytest.raises(DriveError) as caught:
@@ -266,30 +267,36 @@ def test_shares_of_the_compliance(rv, name):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "path", "value", "said"),
     [
         (
             "inner_race_radius = 13.0",
             "inner_race_radius = 14.0",
-            r"crank_bearing\.roller_radius = 2\.5 mm: must be at most 2 mm",  # (18 − 14) / 2
+            "crank_bearing.roller_radius",
+            "= 2.5 mm",
+            "must be at most 2 mm",  # (18 − 14) / 2
         ),
         pytest.param(
             "\npin_radius = 3.0",
             "\npin_radius = 9.0",
-            r"pin_wheel\.pin_radius = 9 mm: must be less than 6\.27673 mm",
+            "pin_wheel.pin_radius",
+            "= 9 mm",
+            "must be less than 6.27673 mm",
             marks=pytest.mark.slow,
         ),
         pytest.param(
             "circle_radius = 42.0 ",
             "circle_radius = 62.0 ",
-            r"crank\.circle_radius = 62 mm: bores cut through the root",
+            "crank.circle_radius",
+            "= 62 mm",
+            "bores cut through the root",
             marks=pytest.mark.slow,
         ),
     ],
 )
-def test_causes_are_looked_for_without_a_pin_shaft(old, new, message):
+def test_causes_are_looked_for_without_a_pin_shaft(old, new, path, value, said):
     """Fields of a part that the drive has not were read ("unforeseen AttributeError")."""
     text = shipped_drive("rv")
     assert old in text
-    with pytest.raises(DriveError, match=message):
+    with refused_field(path, value, said):
         parse_drive(text.replace(old, new), "rv")

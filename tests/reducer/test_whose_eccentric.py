@@ -6,6 +6,7 @@ import json
 
 import pyarrow.parquet as pq
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.commands.program import main
 from ltca.drive.fields import whose
@@ -64,51 +65,51 @@ def test_a_study_says_whose_the_eccentric_is(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("entries", "told"),
     [
-        (["{ disc = 2, crank = 0 }"], r"crank\.of, entry 0: disc = 2: must be less than 2"),
-        (["{ disc = 0, crank = 0 }", "{ disc = 1, crank = 3 }"], r"crank\.of, entry 1: crank = 3: must be less than 3"),
-        (["{ disc = 1 }"], r"crank\.of, entry 0: crank is left out"),
-        (["{ disc = 1, crank = 2 }"] * 2, r"crank\.of, entry 1: disc 1 on crank 2 has an entry already"),
+        (["{ disc = 2, crank = 0 }"], "crank.of, entry 0: disc = 2: must be less than 2"),
+        (["{ disc = 0, crank = 0 }", "{ disc = 1, crank = 3 }"], "crank.of, entry 1: crank = 3: must be less than 3"),
+        (["{ disc = 1 }"], "crank.of, entry 0: crank is left out"),
+        (["{ disc = 1, crank = 2 }"] * 2, "crank.of, entry 1: disc 1 on crank 2 has an entry already"),
         (
             ["{ disc = 1, crank = 2, phase_error = 0.9 }"],
-            r"crank\.of, entry 0 \(disc 1, crank 2\): phase_error = 0\.9 rad",
+            "crank.of, entry 0 (disc 1, crank 2): phase_error = 0.9 rad",
         ),
         (
             ["{ disc = 0, crank = 0, eccentricity_error = 0.9 }"],
-            r"crank\.of, entry 0 \(disc 0, crank 0\): eccentricity_error",
+            "crank.of, entry 0 (disc 0, crank 0): eccentricity_error",
         ),
         (
             ["{ disc = 0, crank = 0, phase_eror = 0.1 }"],
-            r"crank\.of, entry 0: phase_eror: is not a field .*`phase_error`",
+            "crank.of, entry 0: phase_eror: is not a field …`phase_error`",
         ),
-        (["3"], r"crank\.of, entry 0 = 3: must be a table"),
+        (["3"], "crank.of, entry 0 = 3: must be a table"),
     ],
 )
 def test_messages_of_the_file_count_entries(entries, told):
     """`crank.of.0.disc = 2` read as eccentric 0, which is on disc 0."""
-    with pytest.raises(DriveError, match=told):
+    with error_says(DriveError, *told.split("…")):
         parse_drive(with_of(*entries))
 
 
 @pytest.mark.parametrize(
     ("path", "told"),
     [
-        ("crank.of.6.phase_error", "there is no eccentric 6; .*: N of crank.of.N is disc · 3 \\+ crank, from 0 to 5"),
-        ("disc.of.2.runout.amount", "there is no disc 2; .*: N of disc.of.N is the disc, from 0 to 1"),
-        ("crank.of.N.phase_error", "a number in the place of N; N of crank.of.N is disc · 3 \\+ crank, from 0 to 5"),
-        ("disc.runnout.amount", "did you mean `disc.runout.amount`\\?$"),
-        ("disc.of.1.runout.amonut", "did you mean `disc.of.1.runout.amount`\\?$"),
+        ("crank.of.6.phase_error", "there is no eccentric 6; …: N of crank.of.N is disc · 3 + crank, from 0 to 5"),
+        ("disc.of.2.runout.amount", "there is no disc 2; …: N of disc.of.N is the disc, from 0 to 1"),
+        ("crank.of.N.phase_error", "a number in the place of N; N of crank.of.N is disc · 3 + crank, from 0 to 5"),
+        ("disc.runnout.amount", "did you mean `disc.runout.amount`?"),
+        ("disc.of.1.runout.amonut", "did you mean `disc.of.1.runout.amount`?"),
         (
             "disc.bore_errors.radial",
-            "did you mean `disc.of.N.bore_errors.radial`\\? N of disc.of.N is the disc, from 0 to 1",
+            "did you mean `disc.of.N.bore_errors.radial`? N of disc.of.N is the disc, from 0 to 1",
         ),
     ],
 )
 def test_what_n_is_where_it_is_wrong(path, told):
     """In a study and in [tolerances] alike."""
     drive = parse_drive(RV).cases["nominal"]
-    with pytest.raises(DriveError, match=told):
+    with error_says(DriveError, *told.split("…")):
         with_fields(drive, {path: 0.001})
-    with pytest.raises(DriveError, match=rf"^rv\.toml: tolerances\.{path}: .*{told}"):
+    with error_says(DriveError, *told.split("…"), starts=f"rv.toml: tolerances.{path}: "):
         parse_drive(f"{RV}{path} = {SCATTER}\n", "rv.toml")
 
 
@@ -127,7 +128,7 @@ def test_what_n_is_where_it_is_wrong(path, told):
 def test_a_tolerance_on_a_part_that_is_not_there_is_refused_with_the_file(text, path, told):
     """`run` and `show` took it, and `tolerance` refused it without file and table."""
     head, table, rest = text.partition("[tolerances]\n")
-    with pytest.raises(DriveError, match=rf"^drive\.toml: tolerances\.{path}: {told}"):
+    with refused_field(f"tolerances.{path}", "", told, alone=True, source="drive.toml"):
         parse_drive(f"{head}{table}{path} = {SCATTER}\n{rest}", "drive.toml")
 
 
@@ -138,7 +139,7 @@ def test_a_tolerance_on_a_part_that_one_case_has_is_kept():
     text = f'{head}{table}pin_wheel.support_stiffness = {{ distribution = "normal", tolerance = 1e4 }}\n{rest}{cases}'
     file = parse_drive(text, "drive.toml")
     assert "pin_wheel.support_stiffness" in file.tolerances
-    told = r"^drive\.toml: case rigid: tolerances\.pin_wheel\.support_stiffness: is left out in this drive"
-    with pytest.raises(DriveError, match=told):
+    told = "drive.toml: case rigid: tolerances.pin_wheel.support_stiffness: is left out in this drive"
+    with error_says(DriveError, starts=told):
         tolerance_study(file, case="rigid", samples=4, positions=3)
     assert tolerance_study(file, case="soft", samples=4, positions=3).design.samples == 4

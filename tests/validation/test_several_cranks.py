@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from refusals import refused_field
 
 from fem.body.wall_stress import WallStress
 from fem.drive.disc_stress import DiscStress
@@ -15,7 +16,6 @@ from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
 from ltca.compliance.stress_coefficients import StressCoefficients
 from ltca.drive.single_discs import single_discs
-from ltca.errors import DriveError
 from ltca.geometry.boundary_stations import Boundary
 from ltca.page.scene import drive_scene
 from ltca.reading.changes import with_fields
@@ -308,8 +308,8 @@ def test_cranks_are_planned_and_supports_refused(drive):
     assert plan.drives == {"nominal": drive}
     support = parse_drive(shipped_drive("rv"), "rv").cases["nominal"].crank.support
     for refused, field in (
-        (replace(drive, crank=replace(drive.crank, support=support)), r"crank\.support"),
-        (replace(drive, pin_wheel=replace(drive.pin_wheel, support_stiffness=5e5)), r"pin_wheel\.support_stiffness"),
+        (replace(drive, crank=replace(drive.crank, support=support)), "crank.support"),
+        (replace(drive, pin_wheel=replace(drive.pin_wheel, support_stiffness=5e5)), "pin_wheel.support_stiffness"),
     ):
-        with pytest.raises(DriveError, match=field):
+        with refused_field(field):
             plan_study(replace(file, cases={"nominal": refused}), None, None, "quick", SolutionOptions())

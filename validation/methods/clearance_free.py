@@ -33,7 +33,7 @@ from ltca.contact.hertz import line_half_width
 from ltca.contact.pressure_cells import PatchGrid, PatchSolution, end_grading, solve_patch
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive, contact_modulus
-from ltca.errors import ConvergenceError, DriveError
+from ltca.errors import ConvergenceError, DriveError, Problem
 from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import first_contact
 from ltca.geometry.pairs import ContactGeometry
@@ -122,8 +122,9 @@ def analyse_without_clearance(
 
 def _refuse_clearance(drive: Drive) -> None:
     require(drive, "clearance-free")
-    problems = [
-        f"clearance.{name} = {value:g} mm: must be 0 mm for the clearance-free analysis"
+    said = "must be 0 mm for the clearance-free analysis"
+    problems: list[str] = [
+        Problem.of(f"clearance.{name}", f"= {value:g} mm", said, bound=("equal to", 0.0))
         for name, value in (("bearing", drive.clearance.bearing), ("pin_hole", drive.clearance.pin_hole))
         if value != 0.0
     ]

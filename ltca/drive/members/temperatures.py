@@ -22,7 +22,7 @@ from ltca.drive.materials import Material, Materials
 from ltca.drive.members.operation import REFERENCE_TEMPERATURE, Temperature
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import Grows
-from ltca.errors import DriveError
+from ltca.errors import DriveError, Problem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,8 +140,11 @@ def growth_of(drive: Drive) -> Growth:
     if missing:
         raise DriveError(
             [
-                f"materials.{part}.thermal_expansion: is missing; {table} is not the {REFERENCE_TEMPERATURE:g} °C that "
-                "lengths are given at"
+                Problem.of(
+                    f"materials.{part}.thermal_expansion",
+                    "",
+                    f"is missing; {table} is not the {REFERENCE_TEMPERATURE:g} °C that lengths are given at",
+                )
                 for part, table in missing.items()
             ]
         )
@@ -237,23 +240,26 @@ def _with_backlash_of_teeth(warm: Drive, cold: Drive, growth: Growth) -> Drive:
     opened = 2.0 * stage.mesh(distance).separating * distance * (growth.carrier - growth.eccentric)
     left = stage.backlash * growth.eccentric + opened
     if left < 0.0:
-        raise DriveError(
-            [
-                f"first_stage.backlash = {stage.backlash:g} mm: must be at least {-opened / growth.eccentric:.3g} mm, by which "
-                "teeth close at these temperatures (the carrier grows less than its crankshafts), or they jam"
-            ]
+        closed = -opened / growth.eccentric
+        said = (
+            f"must be at least {closed:.3g} mm, by which teeth close at these temperatures (the carrier grows less than "
+            "its crankshafts), or they jam"
         )
+        raise DriveError([_of_backlash(stage.backlash, said, closed)])
     assert warm.first_stage is not None
     teeth = replace(warm.first_stage, backlash=left)
     if teeth.closed_by_runout(distance * growth.carrier) > left:
         needed = (teeth.closed_by_runout(distance * growth.carrier) - opened) / growth.eccentric
-        raise DriveError(
-            [
-                f"first_stage.backlash = {stage.backlash:g} mm: must be at least {needed:.4g} mm beside first_stage.sun_runout "
-                "and first_stage.planet_runout at these temperatures, or teeth jam"
-            ]
+        said = (
+            f"must be at least {needed:.4g} mm beside first_stage.sun_runout and first_stage.planet_runout at these "
+            "temperatures, or teeth jam"
         )
+        raise DriveError([_of_backlash(stage.backlash, said, needed)])
     return replace(warm, first_stage=teeth)
+
+
+def _of_backlash(backlash: float, said: str, least: float) -> Problem:
+    return Problem.of("first_stage.backlash", f"= {backlash:g} mm", said, bound=("at least", least))
 
 
 def _with_roller_length(warm: Drive, cold: Drive, growth: Growth) -> Drive:

@@ -14,7 +14,7 @@ from ltca.drive.members.named_materials import with_named_materials
 from ltca.drive.members.operation import Friction, Lubricant, Temperature
 from ltca.drive.members.width import FEWEST_SLICES, MOST_SLICES, Contact
 from ltca.drive.mistakes import describe_mistakes
-from ltca.errors import DriveError, did_you_mean, shortened
+from ltca.errors import DriveError, Problem, did_you_mean, shortened
 from ltca.quantities import NEED_SLICES
 from ltca.reading.toml_text import parse_toml, read_text, require_kind
 from ltca.studies.design_search.requirements import (
@@ -215,11 +215,13 @@ def _contradictions(asked: Asked, materials: Materials, limits: Limits, shop: tu
             "load.external": asked.load is not None and bool(asked.load.external),
         }
         if beside := next((name for name, given in acts.items() if given), None):
-            found.append(f"first_stage.plane: must be given with {beside}, in mm: the forces of the teeth act there")
+            said = f"must be given with {beside}, in mm: the forces of the teeth act there"
+            found.append(Problem.of("first_stage.plane", "", said))
     if asked.kind == "rv" and asked.shop.shaft_pin_stiffness is not None:
         found.append('shop.shaft_pin_stiffness: must be left out with kind = "rv", which has no shaft pins')
     if asked.kind == "rv" and "pin_hole_clearance" in shop:
-        found.append('shop.pin_hole_clearance: must be left out with kind = "rv", which has no holes for shaft pins')
+        said = 'must be left out with kind = "rv", which has no holes for shaft pins'
+        found.append(Problem.of("shop.pin_hole_clearance", "", said))
     if asked.kind == "rv" and 1 in asked.numbers_of_discs:
         found.append('discs: must be 2 or 3 with kind = "rv"; one disc leaves its cranks unbalanced')
     for name in CLEARANCES:

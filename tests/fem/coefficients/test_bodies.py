@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
+from refusals import error_says
 
 from fem.body.elasticity import area_loads, assemble_stiffness, rigid_modes
 from fem.body.stress import recover_stress
@@ -416,7 +417,7 @@ def test_unfit_numbers_of_stations_are_refused(disc_shape, scale):
 
 @pytest.mark.parametrize("size", [0.0, -1.0, 5.0, float("nan")])
 def test_unfit_sizes_are_refused(disc_shape, stations, size):
-    with pytest.raises(MeshError, match=r"size = .* \(--size\): must be"):
+    with error_says(MeshError, "size = ", " (--size): must be"):
         derive_disc(disc_shape, stations, STEEL, thickness=1.0, size=size)
-    with pytest.raises(MeshError, match=r"size = .* \(--size\): must be"):
+    with error_says(MeshError, "size = ", " (--size): must be"):
         derive_pin(CircleShape(name="pin", radius=5.0, core_radius=1.0), STEEL, thickness=1.0, size=size)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import error_is, error_says
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.coefficients.stations import DiscStations
@@ -340,10 +341,10 @@ def test_a_file_that_only_claims_to_be_the_drives_is_found_out(variable, change,
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda d: d.drop_vars(["race_approach", "pin_half_width"]), "it lacks pin_half_width, race_approach$"),
+        (lambda d: d.drop_vars(["race_approach", "pin_half_width"]), "it lacks pin_half_width, race_approach"),
         (lambda d: d.drop_attrs(), "it lacks the attributes shape, clearances_left_out, bearing_clearance"),
-        (lambda d: d.assign(wide_station=("wide", [0])), "it lacks wide_half_width, wide_approach$"),
-        (lambda d: d.assign(station_x=("place", d["station_x"].values)), r"station_x has the dimensions \(place\)"),
+        (lambda d: d.assign(wide_station=("wide", [0])), "it lacks wide_half_width, wide_approach"),
+        (lambda d: d.assign(station_x=("place", d["station_x"].values)), "station_x has the dimensions (place)"),
         (lambda d: d.isel(station_loaded=slice(5)), "station and station_loaded differ in length"),
         (lambda d: d.assign(pin_approach=np.nan), "pin_approach holds values that are no finite numbers"),
         (lambda d: d.assign(pin_approach="soft"), "pin_approach holds no numbers"),
@@ -362,7 +363,8 @@ def test_a_file_that_only_claims_to_be_the_drives_is_found_out(variable, change,
     ],
 )
 def test_a_wrong_schema_is_one_line(change, message, dataset, tmp_path):
-    with pytest.raises(CycloError, match=message) as caught:
+    lacking = message if message.endswith("_approach") else ""  # those, and no others
+    with error_says(CycloError, message, ends=lacking) as caught:
         run("--check", write(change(foreign(dataset)), tmp_path))
     assert "\n" not in str(caught.value)
 
@@ -372,22 +374,22 @@ def test_check_of_another_drives_file(dataset, tmp_path):
     shape["crank.eccentricity"] = 3.9
     path = write(foreign(dataset).assign_attrs(shape=json.dumps(shape)), tmp_path)
     assert run("--check", path) == 0
-    with pytest.raises(CycloError, match=r"other bodies than those of paper: crank\.eccentricity 3\.9 \(4 there\)"):
+    with error_says(CycloError, "other bodies than those of paper: crank.eccentricity 3.9 (4 there)"):
         run("--check", path, "paper", "--case", "CS-6")
 
 
 def test_check_knows_files_that_leave_clearances_out_on_purpose(dataset, tmp_path):
     """Of CS-6 without its clearances: it serves that case when it says so, not otherwise."""
     silent = write(foreign(dataset).assign_attrs(clearances_left_out=0), tmp_path)
-    with pytest.raises(CycloError, match=r"bore_radius 29\.5 \(29\.515 there\), hole_radius"):
+    with error_says(CycloError, "bore_radius 29.5 (29.515 there), hole_radius"):
         run("--check", silent, "paper", "--case", "CS-6")
     assert run("--check", silent, "paper", "--case", "CS-1") == 0
 
 
 def test_check_derives_nothing(made, tmp_path):
-    with pytest.raises(CycloError, match="--size: has no meaning with --check"):
+    with error_says(CycloError, "--size: has no meaning with --check"):
         run("--check", str(made[0]), "--size", "0.5")
-    with pytest.raises(CycloError, match="give a drive file, or a file of coefficients with --check"):
+    with error_is(CycloError, "derive: give a drive file, or a file of coefficients with --check"):
         run()
     with pytest.raises(CycloError, match="no such file"):
         run("--check", str(tmp_path / "none.nc"))

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from fem.errors import MeshError
 from fem.export import solids
@@ -134,6 +135,6 @@ def test_names_beyond_ascii_and_quotes(kinds_of_drives, tmp_path):
 def test_a_solid_of_a_wrong_volume_is_refused(kinds_of_drives, tmp_path, monkeypatch):
     """As one closed spline the kernel reads a flank wrong."""
     monkeypatch.setattr(solids, "SAME_VOLUME", 1e-7)
-    with pytest.raises(MeshError, match=r"gmsh made disc with .* its section times its height is"):
+    with error_says(MeshError, "gmsh made disc with ", " its section times its height is"):
         write_solids(make_parts(kinds_of_drives["paper"], "CS-1")[0], tmp_path / "part.step")
     assert list(tmp_path.iterdir()) == []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import error_says
 from skfem import MeshTri1, MeshTri2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
@@ -40,7 +41,7 @@ def test_a_shifted_mid_side_node_has_the_jacobian_of_the_quarter_point_element(p
     body = with_middle(single([0j, 1 + 0j, 1j], order=2), (0, 1), complex(position))
     assert measure_quality(body).scaled_jacobian == pytest.approx(expected, abs=1e-12)
     if expected <= 0.0:
-        with pytest.raises(MeshError, match=r"mesh of one has 1 inverted element\(s\)"):
+        with error_says(MeshError, "mesh of one has 1 inverted element(s)"):
             require_valid_elements(body)
 
 
@@ -53,12 +54,12 @@ def test_determinants_match_scikit_fem_on_a_curved_element() -> None:
 
 
 def test_a_clockwise_triangle_is_inverted() -> None:
-    with pytest.raises(MeshError, match=r"1 inverted element\(s\); the worst is element 0 near \(0.333333, 0.333333\)"):
+    with error_says(MeshError, "1 inverted element(s); the worst is element 0 near (0.333333, 0.333333)"):
         require_valid_elements(single([0j, 1j, 1 + 0j]))
 
 
 def test_a_flat_triangle_is_too_distorted() -> None:
-    with pytest.raises(MeshError, match=r"too distorted .* smallest angle must be at least 15°"):
+    with error_says(MeshError, "too distorted ", "smallest angle must be at least 15°"):
         require_quality(single([0j, 1 + 0j, 0.5 + 0.05j]))
 
 

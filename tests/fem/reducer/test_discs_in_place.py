@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused_field
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.drive.expected_contacts import expect_contacts
@@ -14,7 +15,6 @@ from fem.drive.solution import solve_drive
 from fem.reducer.solution import expect_shares
 from ltca.drive.deviations import OneDisc, Runout
 from ltca.drive.single_discs import single_discs
-from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 
@@ -59,15 +59,15 @@ def test_springs_share_the_moment(three):
 
 
 def test_one_solution_is_of_one_disc(three):
-    with pytest.raises(DriveError, match=r"disc\.number_of_discs = 3: must be 1"):
+    with refused_field("disc.number_of_discs", "= 3", bound=("equal to", 1)):
         solve_drive(three, 0.5)
-    with pytest.raises(DriveError, match=r"disc\.number_of_discs = 3: must be 1"):
+    with refused_field("disc.number_of_discs", "= 3", bound=("equal to", 1)):
         expect_contacts(three, 0.5)
-    with pytest.raises(DriveError, match=r"disc\.number_of_discs = 3: must be 1"):
+    with refused_field("disc.number_of_discs", "= 3", bound=("equal to", 1)):
         derive_coefficients(three)
 
 
 def test_the_moment_of_a_held_wheel_is_not_known_before(paper_cases):
     held = with_fields(paper_cases["CS-1"], {"installation.held": "pin-wheel"})
-    with pytest.raises(DriveError, match=r"installation\.held = pin-wheel: must be pin-shaft"):
+    with refused_field("installation.held", "= pin-wheel", "must be pin-shaft"):
         solve_drive(held, 0.5)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import refused_field
 
 from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
@@ -24,7 +25,6 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset as results_dataset
 from ltca.drive.parts import Material
 from ltca.drive.single_discs import equal_parts, single_discs
-from ltca.errors import DriveError
 from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
 from ltca.reading.coefficient_file import write_coefficients
@@ -119,11 +119,11 @@ def test_springs_balance_and_do_not_ask_for_numbers(small):
 def test_members_that_yield_are_refused_by_name(rv):
     support = parse_drive(shipped_drive("rv"), "rv").cases["nominal"].crank.support
     for drive, field in (
-        (replace(rv, crank=replace(rv.crank, support=support)), r"crank\.support"),
-        (replace(rv, pin_wheel=replace(rv.pin_wheel, support_stiffness=5e5)), r"pin_wheel\.support_stiffness"),
+        (replace(rv, crank=replace(rv.crank, support=support)), "crank.support"),
+        (replace(rv, pin_wheel=replace(rv.pin_wheel, support_stiffness=5e5)), "pin_wheel.support_stiffness"),
     ):
         for refused in (solve_reducer, expect_contacts):
-            with pytest.raises(DriveError, match=field):
+            with refused_field(field):
                 refused(single_discs(drive)[0], ANGLE)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from fem.reducer.shares import MOMENT_TOLERANCE, SharedAnswer, share_moment
 from ltca.errors import ConvergenceError
@@ -80,7 +81,7 @@ def test_a_disc_that_carries_nothing_is_named():
             wheel_angle=np.array([-4e-4, -4e-4, -9e-3]) + SOFTNESS * moment, left_over=float(moment.sum()) - TOTAL
         )
 
-    with pytest.raises(ConvergenceError, match=r"disc 2 carries less than 0\.001 of the mean share"):
+    with error_says(ConvergenceError, starts="disc 2 carries less than 0.001 of the mean share"):
         share_moment(one_idle, np.full(3, TOTAL / 3.0), SOFTNESS)
 
 

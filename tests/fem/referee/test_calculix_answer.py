@@ -4,6 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from refusals import error_says
 
 from fem.referee.calculix import last_output, read_forces, read_pressures, read_wheel_turn, run_calculix
 from ltca.errors import CycloError
@@ -44,12 +45,12 @@ def test_the_last_increment_is_the_answer():
 
 
 def test_contacts_that_pull_are_no_answer():
-    with pytest.raises(CycloError, match="contacts that pull: -9440 MPa"):
+    with error_says(CycloError, "contacts that pull: -9440 MPa"):
         last_output(LAST + FIRST)
     # What the default size ended with: more than half of the largest pressure, among 50,000 points.
-    with pytest.raises(CycloError, match=r"contacts that pull: -913\.4 MPa, largest pressure 1554 MPa"):
+    with error_says(CycloError, "contacts that pull: -913.4 MPa, largest pressure 1554 MPa"):
         last_output(increment([1210.0, -913.4, 1554.0], 0.0, 1.0))
-    with pytest.raises(CycloError, match=r"contacts that pull: -22\.9 MPa"):
+    with error_says(CycloError, "contacts that pull: -22.9 MPa"):
         last_output(increment([1210.0, -22.9, 2061.3], 0.0, 1.0))
     # Single points at the rim that changed sides last.
     assert read_pressures(last_output(increment([1210.0, -1.3, 2061.3], 0.0, 1.0)))

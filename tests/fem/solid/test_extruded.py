@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import error_says
 from skfem import MeshQuad, MeshQuad2
 
 from fem.body.condensation import order_nodes
@@ -180,12 +181,12 @@ def test_layers_become_thinner_and_end_where_they_are_told_to():
     [
         (lambda: graded_layers(0.0, 2, "whole"), "thickness 0 mm"),
         (lambda: graded_layers(1.0, 0, "whole"), "0 layers"),
-        (lambda: graded_layers(1.0, 2, "whole", finest=1.5), r"in \(0, 1\]"),
+        (lambda: graded_layers(1.0, 2, "whole", finest=1.5), "in (0, 1]"),
         (lambda: graded_layers(1.0, 2, "whole", marks=(0.7,)), "height 0.7 mm"),
         (lambda: Layers(vertices=np.array([0.0, 0.0]), parity="whole"), "ascending"),
         (lambda: Layers(vertices=np.array([1.0, 2.0]), parity="symmetric"), "must be 0"),
     ],
 )
 def test_layers_that_cannot_be_are_refused(make, words):
-    with pytest.raises(MeshError, match=words):
+    with error_says(MeshError, words):
         make()

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_is, error_says, refused_field
 
 import ltca
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain, engine_named, engine_of, nearly_same_body
@@ -58,22 +59,20 @@ def test_names_of_bodies_reach_the_engine():
     ],
 )
 def test_bodies_that_mean_nothing_are_refused(given, words):
-    with pytest.raises(DriveError, match=words):
+    with error_says(DriveError, words):
         ltca.analyse(PAPER, 2, **given)
 
 
 def test_bodies_are_refused_where_a_file_contradicts_itself():
     filed = PAPER.with_fields({"analysis.compliance": "half-space", "analysis.bodies": "solid"})
-    with pytest.raises(
-        DriveError, match=r"analysis.bodies = 'solid': has no effect with analysis.compliance = 'half-space'"
-    ):
+    with refused_field("analysis.bodies", "= 'solid'", "has no effect with analysis.compliance = 'half-space'"):
         engine_of([filed])
-    with pytest.raises(DriveError, match=r"analysis.bodies = plane, solid: must be the same in all drives"):
+    with refused_field("analysis.bodies", "= plane, solid", "must be the same in all drives"):
         engine_of([PAPER, filed], "hybrid")
 
 
 def test_coefficients_of_other_bodies_are_refused():
-    with pytest.raises(DriveError, match="coefficients: are of solid bodies; bodies = 'plane' asks for others"):
+    with error_is(DriveError, "coefficients: are of solid bodies; bodies = 'plane' asks for others"):
         Hybrid(coefficients=coefficients(PAPER))
 
 
@@ -103,6 +102,6 @@ def test_what_reshapes_solid_bodies_alone_has_no_derivative_on_them():
             Hybrid(coefficients=coefficients(PAPER, None)),
         )
     ]
-    with pytest.raises(DriveError, match=r"crank_bearing.roller_length: reshapes a body"):
+    with refused_field("crank_bearing.roller_length", "", "reshapes a body"):
         ltca.derivatives(results[0], ["crank_bearing.roller_length"])
     assert "pin_load" in ltca.derivatives(results[1], ["crank_bearing.roller_length"])

@@ -7,6 +7,7 @@ from importlib.resources import files
 
 import numpy as np
 import pytest
+from refusals import error_says, refused_field
 
 import ltca
 from ltca.analysis.derivatives import CENTRAL, FORWARD, LostMotion
@@ -215,7 +216,7 @@ def test_a_disc_that_floats_under_the_light_torque(paper_cases, angle, disc):
 def test_contact_grids_are_refused_by_name(paper_cases):
     """Their loads change cell by cell: slopes over 1e-6 … 1e-3 mm scatter by some 1e-4."""
     result = ltca.analyse(paper_cases["CS-1"], crank_angle=ANGLES[:1], method="direct")
-    with pytest.raises(DriveError, match=r"method direct: has no derivatives"):
+    with error_says(DriveError, starts="method direct: has no derivatives"):
         ltca.derivatives(result, ["disc.shifting_offset"])
 
 
@@ -247,20 +248,17 @@ def test_scalars_are_those_of_their_arrays(paper_cases):
 
 
 @pytest.mark.parametrize(
-    ("path", "told"),
+    ("path", "said"),
     [
-        ("crank_bearing.number_of_rollers", "crank_bearing.number_of_rollers: must be a real number"),
-        ("installation.held", "installation.held: must be a real number"),
-        (
-            "pin_wheel.pin_errors.radial",
-            r"pin_wheel.pin_errors.radial: must be a real number, or an element .*radial\.0",
-        ),
-        ("disc.thicknes", "disc.thicknes"),
+        ("crank_bearing.number_of_rollers", ["must be a real number"]),
+        ("installation.held", ["must be a real number"]),
+        ("pin_wheel.pin_errors.radial", ["must be a real number, or an element ", "radial.0"]),
+        ("disc.thicknes", ["is not a field"]),
     ],
 )
-def test_what_is_no_real_field_is_refused_by_name(paper_cases, path, told):
+def test_what_is_no_real_field_is_refused_by_name(paper_cases, path, said):
     result = ltca.analyse(paper_cases["CS-3"], crank_angle=ANGLES[:1])
-    with pytest.raises(DriveError, match=told):
+    with refused_field(path, "", *said):
         ltca.derivatives(result, [path])
 
 
@@ -269,13 +267,13 @@ def test_a_field_that_reshapes_a_body_is_refused_by_name(paper_cases, tmp_path):
     path = tmp_path / "bodies.nc"
     closed_form_coefficients(paper_cases["CS-1"], half_width=0.02, depth=300.0).to_netcdf(path, engine="h5netcdf")
     result = ltca.analyse(paper_cases["CS-1"], crank_angle=ANGLES[:1], compliance="hybrid", coefficients=path)
-    with pytest.raises(DriveError, match=r"disc\.thickness: reshapes a body"):
+    with refused_field("disc.thickness", "", "reshapes a body"):
         ltca.derivatives(result, ["disc.thickness"])
 
 
 def test_a_torque_of_its_own_has_no_field(paper_cases):
     result = ltca.analyse(paper_cases["CS-1"], crank_angle=ANGLES[:1], torque=2e5)
-    with pytest.raises(DriveError, match=r"load\.torque: the analysis has a torque of its own"):
+    with refused_field("load.torque", "", "the analysis has a torque of its own"):
         ltca.derivatives(result, ["load.torque"])
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_is, error_says
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.friction.hysteresis import hysteresis_loop, locked_path
@@ -126,9 +127,9 @@ def test_a_part_of_the_torque_is_the_torque_of_a_lighter_drive(paper):
 
 
 def test_no_friction_no_loop(paper):
-    with pytest.raises(DriveError, match="friction: must be given"):
+    with error_says(DriveError, starts="friction: must be given"):
         locked_path(replace(paper, friction=None), ANGLE, [1e5, 2e5])
-    with pytest.raises(DriveError, match=r"lost_motion = 1\.5"):
+    with error_is(DriveError, "lost_motion = 1.5: must be greater than 0 and less than 1"):
         hysteresis_loop(paper, ANGLE, lost_motion=1.5)
-    with pytest.raises(DriveError, match=r"lost_motion = 0\.7: must be from 0\.001 to 0\.5"):
+    with error_is(DriveError, "lost_motion = 0.7: must be from 0.001 to 0.5 of the rated torque"):
         torque_curve(paper, ANGLE, lost_motion=0.7)

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.results import build_dataset, check_common_shape
@@ -210,9 +211,9 @@ def test_light_torque_is_that_of_the_drive(vary):
 
 def test_cases_of_different_shape_are_refused(vary):
     other = vary(pin_shaft={"number_of_pins": 6})
-    with pytest.raises(
+    with error_says(
         DriveError,
-        match=r"rollers, 6 shaft pins, 1 disc, 1 crank: must be 14 wheel pins, 11 rollers, 8 shaft pins, 1 disc, 1 crank as",
+        "rollers, 6 shaft pins, 1 disc, 1 crank: must be 14 wheel pins, 11 rollers, 8 shaft pins, 1 disc, 1 crank as",
     ):
         check_common_shape({"A": vary(), "B": other})
     check_common_shape({"A": vary(), "C": vary()})

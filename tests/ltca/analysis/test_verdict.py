@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import reads_as, refused_field
 
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.half_width_guard import displacement_warning
@@ -538,11 +539,11 @@ def test_displacements_are_told_from_a_tenth_of_the_eccentricity():
 @pytest.mark.parametrize(
     ("like", "changes", "told"),
     [
-        ("sleeved", {"materials.shaft_pin.youngs_modulus": 300.0}, r"shaft pins bend by \S+ mm, 1.8 eccentricities"),
-        ("paper", {"pin_shaft.stiffness": 3e3}, r"shaft pins yield by \S+ mm, 0.2\d eccentricities"),
-        ("paper", {"pin_wheel.support_stiffness": 3e3}, r"the wheel moves by \S+ mm"),
-        ("sleeved", {"materials.wheel_pin.youngs_modulus": 1500.0}, r"wheel pins bend by \S+ mm"),
-        ("rv", {"crank.support.stiffness": (2e4, 2e4)}, r"cranks yield by \S+ mm"),
+        ("sleeved", {"materials.shaft_pin.youngs_modulus": 300.0}, "…shaft pins bend by … mm, 1.8 eccentricities…"),
+        ("paper", {"pin_shaft.stiffness": 3e3}, "…shaft pins yield by … mm, 0.2… eccentricities…"),
+        ("paper", {"pin_wheel.support_stiffness": 3e3}, "…the wheel moves by … mm…"),
+        ("sleeved", {"materials.wheel_pin.youngs_modulus": 1500.0}, "…wheel pins bend by … mm…"),
+        ("rv", {"crank.support.stiffness": (2e4, 2e4)}, "…cranks yield by … mm…"),
     ],
 )
 def test_yielding_that_is_no_small_displacement_is_told(like, changes, told):
@@ -550,7 +551,7 @@ def test_yielding_that_is_no_small_displacement_is_told(like, changes, told):
     drive = next(iter(parse_drive(shipped_drive(like)).cases.values()))
     assert not [warning for warning in analyse(drive, ANGLES[:2]).warnings if "displacement" in warning]
     (warning,) = (w for w in analyse(with_fields(drive, changes), ANGLES[:2]).warnings if "displacement" in w)
-    assert re.search(told, warning)
+    assert reads_as(told, warning)
     assert f"from 0.1 eccentricities ({0.1 * drive.crank.eccentricity:.3g} mm) on" in warning
 
 
@@ -735,7 +736,5 @@ def test_the_wall_of_a_ring_is_that_behind_its_seats():
 def test_bolts_stand_on_the_ring():
     ring = {"inner_radius": 60.0, "outer_radius": 98.0, "width": 20.0}
     ring["bolts"] = {"number": 8, "circle_radius": 1050.0, "stiffness": 5e5}
-    with pytest.raises(
-        DriveError, match=r"ring.bolts.circle_radius = 1050 mm: must be at most 147 mm, 1.5 times ring.outer"
-    ):
+    with refused_field("ring.bolts.circle_radius", "= 1050 mm", "1.5 times ring.outer", bound=("at most", 1.5 * 98.0)):
         with_fields(load_drive("robot-joint").cases["nominal"], {"ring": ring})

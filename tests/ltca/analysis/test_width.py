@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse, analyse_cases
@@ -279,7 +280,7 @@ def test_the_plane_has_nothing_of_this(drive):
 
 
 def test_cases_with_other_slices_share_no_dataset(drive):
-    with pytest.raises(DriveError, match=r"5 slices \(contact"):
+    with error_says(DriveError, "5 slices (contact"):
         check_common_shape({"one": with_fields(drive, {"contact.slices": 1}), "two": drive})
 
 
@@ -376,7 +377,7 @@ def test_steep_tilts_are_told(drive):
         inclined = {f"{part}.inclination.y": size for part in ("pin_wheel", "pin_shaft", "crank")}
         return [text for text in analyse(with_fields(drive, inclined), ANGLES[:1]).warnings if "discs tilt" in text]
 
-    assert re.match(r"discs tilt by up to 6 mrad: gaps and forces are linear", told(6e-3)[0])
+    assert told(6e-3)[0].startswith("discs tilt by up to 6 mrad: gaps and forces are linear")
     assert told(4e-3) == []
     plane = analyse(with_fields(drive, {"contact.slices": 1}), ANGLES[:1])
     assert not any("discs tilt" in text for text in plane.warnings)

@@ -6,6 +6,7 @@ import argparse
 import math
 
 import pytest
+from refusals import error_says
 
 from ltca.commands.program import ORDER, build_parser, main
 from ltca.drive.names import names_a_file
@@ -226,5 +227,5 @@ def test_numbers_of_hundreds_of_digits_are_told_as_typed(field, tmp_path, capsys
 
 
 def test_a_torque_turned_round_says_what_turns_it():
-    with pytest.raises(CycloError, match=r"--torque = -5: must be at least 0 N·mm \(load.direction turns it\)"):
+    with error_says(CycloError, "--torque = -5: must be at least 0 N·mm (load.direction turns it)"):
         parse("fem", "--torque=-5")

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import error_says, refused_field
 
 from ltca.analysis.engines import Hybrid, PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
@@ -24,7 +25,7 @@ from ltca.compliance.coefficient_files import (
 from ltca.compliance.coefficients import load_coefficients
 from ltca.drive.deviations import OneDisc, Runout
 from ltca.drive.single_discs import single_discs
-from ltca.errors import CycloError, DriveError
+from ltca.errors import CycloError
 from ltca.output.provenance import code_hash
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import shipped_drive
@@ -93,10 +94,10 @@ def test_files_are_given_to_the_cases_they_belong_to(paper_cases, derived, tmp_p
     assert find_coefficients(cases["CS-6"], files).fingerprint == cases["CS-6"].shape_fingerprint()
     assert derived == []
     assert capsys.readouterr().err == ""
-    with pytest.raises(CycloError, match=r"case CS-6: .*CS-1.nc: belongs to the clearances"):
+    with error_says(CycloError, "case CS-6: ", "CS-1.nc: belongs to the clearances"):
         find_case_coefficients(cases, files[:1])
     other = write(with_fields(cases["CS-1"], ALUMINIUM), tmp_path / "other.nc")
-    with pytest.raises(CycloError, match=r"--coefficients .*other.nc: serves no case of this run"):
+    with error_says(CycloError, "--coefficients ", "other.nc: serves no case of this run"):
         find_case_coefficients(cases, [*files, other])
 
 
@@ -144,12 +145,12 @@ def test_files_that_are_none_are_refused(paper_cases, tmp_path):
     path.write_bytes(b"not netCDF")
     with pytest.raises(CycloError, match="cannot be read as a coefficient file"):
         load_coefficients(path, drive)
-    with pytest.raises(CycloError, match="shape must be a JSON object of numbers"):
+    with error_says(CycloError, "shape must be a JSON object of numbers"):
         load_coefficients(write(drive, path, shape="{"), drive)
     bare = closed_form_coefficients(drive, half_width=0.05, depth=300.0).drop_vars("race_approach")
     del bare.attrs["shape"]
     bare.to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(CycloError, match="it lacks race_approach; it lacks the attributes shape"):
+    with error_says(CycloError, "it lacks race_approach; it lacks the attributes shape"):
         load_coefficients(path, drive)
 
 
@@ -169,7 +170,7 @@ def test_what_plane_strain_cannot_say_is_refused_before_any_work(paper_cases, de
         lambda: find_case_coefficients({"CS-1": paper_cases["CS-1"], "short": short}, engine="fe"),
         lambda: analyse(short, np.array([0.5]), engine=PlaneStrain()),
     ):
-        with pytest.raises(DriveError, match=r"crank_bearing.roller_length = 8 mm"):
+        with refused_field("crank_bearing.roller_length", "= 8 mm"):
             find()
     assert derived == []
     analyse(short, np.array([0.5]), engine=Hybrid())

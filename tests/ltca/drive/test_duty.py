@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.drive.fields import absence, field_kind, read_field
 from ltca.drive.parts import Duty, Lubricant
@@ -53,31 +54,37 @@ def test_fingerprints_know_them_and_those_without_stay():
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
+    ("old", "new", "path", "value", "said"),
     [
-        (
-            "share = 0.7",
-            "share = 0.6",
-            r"duty\.0\.share = 0\.3, duty\.1\.share = 0\.6: must add up to 1, they add up to 0\.9",
-        ),
-        ("share = 0.7", "share = 0.70001", "must add up to 1, they add up to 1.00001"),
-        ("share = 0.7", "", r"duty\.1\.share: is missing"),
-        ("share = 0.7", "shares = 0.7", r"duty\.1\.shares: is not a field; did you mean `share`"),
-        ("speed = 3000", "speed = 0", r"duty\.1\.speed = 0: must be greater than 0 rpm"),
-        ("torque = 200000.0", "torque = -1.0", r"duty\.1\.torque = -1"),
-        ("0.5\n", "1.5\n", r"lubricant\.contamination = 1\.5: must be at least 0 and at most 1"),
-        ("46 cSt", "46 Pa s", r"lubricant\.viscosity = '46 Pa s'.*mm²/s"),
-        ("viscosity", "viscosities", r"lubricant\.viscosities: is not a field"),
+        ("share = 0.7", "share = 0.70001", "duty", "", "must add up to 1, they add up to 1.00001"),
+        ("share = 0.7", "", "duty.1.share", "", "is missing"),
+        ("speed = 3000", "speed = 0", "duty.1.speed", "= 0", "must be greater than 0 rpm"),
+        ("torque = 200000.0", "torque = -1.0", "duty.1.torque", "= -1.0", "must be"),
+        ("0.5\n", "1.5\n", "lubricant.contamination", "= 1.5", "must be at least 0 and at most 1"),
+        ("46 cSt", "46 Pa s", "lubricant.viscosity", "= '46 Pa s'", "mm²/s"),
+        ("viscosity", "viscosities", "lubricant.viscosities", "", "is not a field"),
     ],
 )
-def test_mistakes_are_named(old, new, message):
+def test_mistakes_are_named(old, new, path, value, said):
     assert old in TABLES
-    with pytest.raises(DriveError, match=message):
+    with refused_field(path, value, said):
         drive_of(PLAIN + TABLES.replace(old, new))
 
 
+@pytest.mark.parametrize(
+    ("new", "said"),
+    [
+        ("share = 0.6", "duty.0.share = 0.3, duty.1.share = 0.6: must add up to 1, they add up to 0.9"),
+        ("shares = 0.7", "duty.1.shares: is not a field; did you mean `share`"),
+    ],
+)
+def test_mistakes_of_shares_are_one_sentence(new, said):
+    with error_says(DriveError, said):
+        drive_of(PLAIN + TABLES.replace("share = 0.7", new))
+
+
 def test_a_table_in_the_place_of_tables():
-    with pytest.raises(DriveError, match=r"must be an array of tables, written \[\[duty\]\]"):
+    with refused_field("duty", "", "must be an array of tables, written [[duty]]"):
         drive_of(PLAIN + "\n[duty]\ntorque = 1.0\nspeed = 1.0\nshare = 1.0\n")
 
 
@@ -89,7 +96,7 @@ def test_shares_of_thirds_add_up_within_round_off():
 
 def test_a_lubricant_without_a_speed_is_refused():
     oil = "\n[lubricant]\nviscosity = 46.0\ncontamination = 0.5\n"
-    with pytest.raises(DriveError, match=r"lubricant\.viscosity = 46 mm²/s: needs a speed, load\.speed or those of"):
+    with refused_field("lubricant.viscosity", "= 46 mm²/s", "needs a speed, load.speed or those of"):
         drive_of(PLAIN + oil)
     drive = drive_of(PLAIN.replace("[load]", "[load]\nspeed = 1500.0") + oil)
     assert not find_contradictions(drive)
@@ -104,11 +111,11 @@ def test_fields_by_their_paths():
     assert absence(drive, "duty.2.speed") == "there is no entry 2; [[duty]] has 2, counted from 0"
     faster = with_fields(drive, {"duty.1.speed": 2000.0, "lubricant.viscosity": 32.0})
     assert (faster.duty[1].speed, faster.duty[0], faster.lubricant.viscosity) == (2000.0, drive.duty[0], 32.0)
-    with pytest.raises(DriveError, match=r"duty\.2: there is no entry 2"):
+    with refused_field("duty.2", "", "there is no entry 2"):
         with_fields(drive, {"duty.2.speed": 2000.0})
-    with pytest.raises(DriveError, match=r"duty\.2\.torque = -1"):
+    with refused_field("duty.2.torque", "= -1.0"):
         with_fields(drive, {"duty.2.speed": 1.0, "duty.2.torque": -1.0, "duty.2.share": 0.1})
-    with pytest.raises(DriveError, match=r"did you mean `duty\.N\.share`\? N of duty\.N is the entry"):
+    with refused_field("duty.0.shar", "", "did you mean `duty.N.share`? N of duty.N is the entry"):
         with_fields(drive, {"duty.0.shar": 0.5})
 
 
@@ -116,7 +123,7 @@ def test_an_entry_is_added_whole():
     drive = drive_of(PLAIN)
     added = with_fields(drive, {"duty.0.speed": 1.0, "duty.0.torque": 1.0, "duty.0.share": 1.0})
     assert added.duty == (Duty(torque=1.0, speed=1.0, share=1.0),)
-    with pytest.raises(DriveError, match=r"duty\.0: there is no entry 0"):
+    with refused_field("duty.0", "", "there is no entry 0"):
         with_fields(drive, {"duty.0.speed": 1.0, "duty.0.share": 1.0})
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 import ltca
 from ltca.analysis.loaded_analysis import analyse
@@ -152,9 +153,9 @@ def test_what_is_no_material_is_refused(disc, told):
 
 
 def test_a_change_to_no_material_is_refused():
-    with pytest.raises(DriveError, match=r"materials\.disc = 'PA-12': is no named material"):
+    with error_says(DriveError, starts="materials.disc = 'PA-12': is no named material"):
         with_fields(PAPER, {"materials.disc": "PA-12"})
-    with pytest.raises(DriveError, match="must be the name of a material"):
+    with error_says(DriveError, "must be the name of a material"):
         with_fields(PAPER, {"materials.disc": 3.0})
 
 

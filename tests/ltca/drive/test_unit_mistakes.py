@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says, reads_as
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.loaded_analysis import analyse
@@ -50,24 +50,22 @@ def test_gigapascals_as_plain_number(vary):
 
 @pytest.mark.slow
 def test_a_torque_a_thousand_times_too_large(vary):
-    with pytest.raises(
-        DriveError, match=r"^load.torque = 3.773e\+08 N·mm is 377300 N·m and would press .*\"377.3 N m\""
-    ):
+    with error_says(DriveError, '"377.3 N m"', starts="load.torque = 3.773e+08 N·mm is 377300 N·m and would press "):
         analyse(vary(load={"torque": 377.3e6}), ANGLE)
-    with pytest.raises(DriveError, match=r"^torque = 3.773e\+08 N·mm is"):
+    with error_says(DriveError, starts="torque = 3.773e+08 N·mm is"):
         analyse(vary(), ANGLE, 377.3e6)
 
 
 @pytest.mark.slow
 def test_a_light_torque_beyond_reason(vary):
     """It was 'no equilibrium … the teeth slip': only the torque itself was looked at."""
-    with pytest.raises(DriveError, match=r"^load.light_torque = 1e\+09 N·mm is 1e\+06 N·m and would press"):
+    with error_says(DriveError, starts="load.light_torque = 1e+09 N·mm is 1e+06 N·m and would press"):
         analyse(vary(load={"light_torque": 1e9}), ANGLE)
 
 
 @pytest.mark.slow
 def test_a_stiffness_in_another_unit(vary):
-    with pytest.raises(DriveError, match=r"pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
+    with error_says(DriveError, "pin_shaft.stiffness = 1 N/mm: a shaft pin would yield by"):
         analyse(vary(pin_shaft={"stiffness": 1.0}), ANGLE)
 
 
@@ -120,25 +118,25 @@ def test_one_part_in_gigapascals_is_warned_of(vary):
     [
         (
             {"materials.disc.youngs_modulus": 206e9},
-            r'^materials.disc.*stiffer than diamond.* written 206000 or "206 GPa"$',
+            'materials.disc…stiffer than diamond… written 206000 or "206 GPa"',
         ),
         (
             {"pin_wheel.pin_circle_radius": 0.088, "materials.disc.youngs_modulus": 206e9},
-            r"^pin_wheel.pin_circle_radius = 0.088 mm and youngs_modulus = 2.06e\+11 MPa look like a file in SI units",
+            "pin_wheel.pin_circle_radius = 0.088 mm and youngs_modulus = 2.06e+11 MPa look like a file in SI units…",
         ),
-        ({"pin_wheel.pin_circle_radius": 0.088}, r'smaller than any drive that is built; .* "0.088 m" or 88$'),
-        ({"pin_wheel.pin_circle_radius": 6e4}, r'is 60 m, larger than any drive that is built; .* "60 mm"\?$'),
+        ({"pin_wheel.pin_circle_radius": 0.088}, '…smaller than any drive that is built; … "0.088 m" or 88'),
+        ({"pin_wheel.pin_circle_radius": 6e4}, '…is 60 m, larger than any drive that is built; … "60 mm"?'),
         (
             {"disc.number_of_discs": 2, "disc.phases": (0.0, 180.0)},
-            r'^disc.phases: 180 rad are 28.6 turns; .* "180 deg"$',
+            'disc.phases: 180 rad are 28.6 turns; … "180 deg"',
         ),
-        ({"temperature.housing": 293.0}, r'^temperature.housing = 293 °C: .* kelvin are written "293 K" \(19.85 °C\)$'),
+        ({"temperature.housing": 293.0}, 'temperature.housing = 293 °C: … kelvin are written "293 K" (19.85 °C)'),
     ],
 )
 def test_what_no_drive_has_is_pointed_out_in_one_line(vary, changes, told):
     """They slipped by: pascals, files in SI units, metres, degrees as radians, kelvin."""
     (found,) = unit_warnings(with_fields(vary(), changes, check=False))
-    assert re.search(told, found)
+    assert reads_as(told, found), found
 
 
 BOLTS = {"number": 12, "circle_radius": 75.0, "stiffness": 1e6}
@@ -162,143 +160,143 @@ TEETH = {"first_stage.sun_teeth": 20, "first_stage.planet_teeth": 40, "first_sta
 @pytest.mark.parametrize(
     ("shipped", "changes", "told"),
     [
-        ("robot-joint", {"load.torque": 400.0}, r'0.4 N·m, 1/1300 of what this drive carries .* mean "400 N m"\?$'),
-        ("rv", {"load.torque": 800.0}, r'0.8 N·m, 1/1300 of .* mean "800 N m"\?$'),
-        ("sleeved", {"load.light_torque": 15.0}, r'0.015 N·m, 1/33000 of load.torque; did you mean "15 N m"\?$'),
-        ("robot-joint", {"load.torque": 4e8}, r'400000 N·m, 740 times what this drive carries .* mean "400 N m"\?$'),
-        ("robot-joint", {"pin_wheel.pin_radius": 0.0025}, r'^pin_wheel.pin_radius = .* mean "0.0025 m", 2.5 mm\?$'),
-        ("rv", {"crank.eccentricity": 0.00125}, r'^crank.eccentricity = .* mean "0.00125 m", 1.25 mm\?$'),
-        ("rv", {"crank.support.diameter": 0.02}, r'^crank.support.diameter = .* mean "0.02 m", 20 mm\?$'),
-        ("rv", {"crank_bearing.roller_length": 0.012}, r'^crank_bearing.roller_length = .* mean "0.012 m", 12 mm\?$'),
+        ("robot-joint", {"load.torque": 400.0}, '…0.4 N·m, 1/1300 of what this drive carries … mean "400 N m"?'),
+        ("rv", {"load.torque": 800.0}, '…0.8 N·m, 1/1300 of … mean "800 N m"?'),
+        ("sleeved", {"load.light_torque": 15.0}, '…0.015 N·m, 1/33000 of load.torque; did you mean "15 N m"?'),
+        ("robot-joint", {"load.torque": 4e8}, '…400000 N·m, 740 times what this drive carries … mean "400 N m"?'),
+        ("robot-joint", {"pin_wheel.pin_radius": 0.0025}, 'pin_wheel.pin_radius = … mean "0.0025 m", 2.5 mm?'),
+        ("rv", {"crank.eccentricity": 0.00125}, 'crank.eccentricity = … mean "0.00125 m", 1.25 mm?'),
+        ("rv", {"crank.support.diameter": 0.02}, 'crank.support.diameter = … mean "0.02 m", 20 mm?'),
+        ("rv", {"crank_bearing.roller_length": 0.012}, 'crank_bearing.roller_length = … mean "0.012 m", 12 mm?'),
         (
             "robot-joint",
             {"disc.thickness": 0.01, "disc.planes": (), "crank_bearing.roller_length": 0.01},
-            r'^disc.thickness = .* mean "0.01 m", 10 mm\?$',
+            'disc.thickness = … mean "0.01 m", 10 mm?',
         ),
-        ("sleeved", {"pin_wheel.beam.span": 26_000.0}, r'^pin_wheel.beam.span = .* mean "26000 µm", 26 mm\?$'),
-        ("sleeved", {"pin_shaft.beam.diameter": 0.009}, r'^pin_shaft.beam.diameter = .* mean "0.009 m", 9 mm\?$'),
-        ("robot-joint", {"clearance.bearing": 5e-6}, r'^clearance.bearing = .* finer .* mean "5e-06 m", 0.005 mm\?$'),
+        ("sleeved", {"pin_wheel.beam.span": 26_000.0}, 'pin_wheel.beam.span = … mean "26000 µm", 26 mm?'),
+        ("sleeved", {"pin_shaft.beam.diameter": 0.009}, 'pin_shaft.beam.diameter = … mean "0.009 m", 9 mm?'),
+        ("robot-joint", {"clearance.bearing": 5e-6}, 'clearance.bearing = … finer … mean "5e-06 m", 0.005 mm?'),
         (
             "robot-joint",
             {"load.speed": 25.0},
-            r'^load.speed = 25 rpm .* "25 Hz" \(1500 rpm\) or "25 rad/s" \(239 rpm\)\?$',
+            'load.speed = 25 rpm … "25 Hz" (1500 rpm) or "25 rad/s" (239 rpm)?',
         ),
         (
             "robot-joint",
             {"materials.disc.allowable_pressure": 1.5},
-            r'^materials.disc: allowable_pressure = 1.5 MPa .* mean "1.5 GPa" \(1500 MPa\)\?$',
+            'materials.disc: allowable_pressure = 1.5 MPa … mean "1.5 GPa" (1500 MPa)?',
         ),
-        ("rv", {"materials.wheel_pin.yield_strength": 2.2}, r'^materials.wheel_pin: yield_strength .* mean "2.2 GPa"'),
+        ("rv", {"materials.wheel_pin.yield_strength": 2.2}, 'materials.wheel_pin: yield_strength … mean "2.2 GPa"…'),
         (
             "rv",
             {"materials.disc.allowable_pressure": 1.5e9},
-            r'^materials.disc: allowable_pressure = 1.5e\+09 MPa is 7300 times .* mean "1.5e\+09 Pa" \(1500 MPa\)\?$',
+            'materials.disc: allowable_pressure = 1.5e+09 MPa is 7300 times … mean "1.5e+09 Pa" (1500 MPa)?',
         ),
         (
             "robot-joint",
             {"pin_shaft.stiffness": 400.0},
-            r'^pin_shaft.stiffness = 400 N/mm .* mean "400 N/µm" \(400000 N',
+            'pin_shaft.stiffness = 400 N/mm … mean "400 N/µm" (400000 N…',
         ),
-        ("robot-joint", {"pin_shaft.stiffness": 100.0}, r'^pin_shaft.stiffness = 100 N/mm .* mean "100 N/µm"'),
-        ("rv", {"crank.support.stiffness": (400.0, 4e5)}, r'^crank.support.stiffness\[0\] = 400 N/mm .* "400 N/µm"'),
-        ("rv", {"pin_wheel.support_stiffness": 1000.0}, r'^pin_wheel.support_stiffness = 1000 N/mm .* "1000 N/µm"'),
+        ("robot-joint", {"pin_shaft.stiffness": 100.0}, 'pin_shaft.stiffness = 100 N/mm … mean "100 N/µm"…'),
+        ("rv", {"crank.support.stiffness": (400.0, 4e5)}, 'crank.support.stiffness[0] = 400 N/mm … "400 N/µm"…'),
+        ("rv", {"pin_wheel.support_stiffness": 1000.0}, 'pin_wheel.support_stiffness = 1000 N/mm … "1000 N/µm"…'),
         (
             "robot-joint",
             RINGED | {"ring.width": 0.03},
-            r'^ring.width = .* the thickness of all discs .* mean "0.03 m", 30 mm\?$',
+            'ring.width = … the thickness of all discs … mean "0.03 m", 30 mm?',
         ),
-        ("robot-joint", RINGED | {"ring.width": 30e3}, r'^ring.width = 30000 mm .* mean "30000 µm", 30 mm\?$'),
-        ("robot-joint", RINGED | {"ring.outer_radius": 90e3}, r'^ring.outer_radius = .* mean "90000 µm", 90 mm\?$'),
+        ("robot-joint", RINGED | {"ring.width": 30e3}, 'ring.width = 30000 mm … mean "30000 µm", 30 mm?'),
+        ("robot-joint", RINGED | {"ring.outer_radius": 90e3}, 'ring.outer_radius = … mean "90000 µm", 90 mm?'),
         (
             "robot-joint",
             RINGED | {"ring.bolts": BOLTS | {"stiffness": 500.0}},
-            r'^ring.bolts.stiffness = .* "500 N/µm"',
+            'ring.bolts.stiffness = … "500 N/µm"…',
         ),
         (
             "rv",
             ROWS | {"main_bearing.bearings.0.pitch_radius": 0.09},
-            r'^main_bearing.bearings.0.pitch_radius = .* "0.09 m"',
+            'main_bearing.bearings.0.pitch_radius = … "0.09 m"…',
         ),
         (
             "rv",
             ROWS | {"main_bearing.bearings.0.axial_stiffness": 500.0},
-            r'^main_bearing.bearings.0.axial_stiff.* "500 N/µm"',
+            'main_bearing.bearings.0.axial_stiff… "500 N/µm"…',
         ),
         (
             "robot-joint",
             RINGED | {"ring.material.youngs_modulus": 206.0},
-            r'^ring.material.youngs_modulus = 206 MPa, beside .* write "206 GPa" for a metal$',
+            'ring.material.youngs_modulus = 206 MPa, beside … write "206 GPa" for a metal',
         ),
         (
             "robot-joint",
             RINGED | {"ring.material.youngs_modulus": 206e9},
-            r"^ring.material.youngs_modulus = 2.06e\+11 MPa is stiffer than diamond .* not Pa",
+            "ring.material.youngs_modulus = 2.06e+11 MPa is stiffer than diamond … not Pa…",
         ),
         (
             "rv",
             {"materials.crankshaft.youngs_modulus": 206.0},
-            r"^materials.crankshaft.youngs_modulus = 206 MPa, beside",
+            "materials.crankshaft.youngs_modulus = 206 MPa, beside…",
         ),
         (
             "rv",
             POSTS | {"materials.carrier.youngs_modulus": 206.0},
-            r"^materials.carrier.youngs_modulus = 206 MPa, beside",
+            "materials.carrier.youngs_modulus = 206 MPa, beside…",
         ),
         (
             "rv",
             {"materials.crankshaft.yield_strength": 1.1},
-            r'^materials.crankshaft: yield_strength .* mean "1.1 GPa"',
+            'materials.crankshaft: yield_strength … mean "1.1 GPa"…',
         ),
-        ("rv", STIFF | {"main_bearing.preload": 2.0}, r'^main_bearing.preload.force = 2 N is 1/.* mean "2 kN"\?$'),
-        ("rv", {"crank.support.preload": 0.5}, r'^crank.support.preload.force = 0.5 N is 1/.* mean "0.5 kN"\?$'),
-        ("rv", STIFF | {"load.external.0.force.x": -1.5}, r'^load.external.0.force.x = -1.5 N is .* "-1.5 kN"\?$'),
+        ("rv", STIFF | {"main_bearing.preload": 2.0}, 'main_bearing.preload.force = 2 N is 1/… mean "2 kN"?'),
+        ("rv", {"crank.support.preload": 0.5}, 'crank.support.preload.force = 0.5 N is 1/… mean "0.5 kN"?'),
+        ("rv", STIFF | {"load.external.0.force.x": -1.5}, 'load.external.0.force.x = -1.5 N is … "-1.5 kN"?'),
         (
             "rv",
             ROWS | {"main_bearing.bearings.1.plane": 30e3},
-            r'^main_bearing.bearings.1.plane = .* "30000 µm", 30 mm\?$',
+            'main_bearing.bearings.1.plane = … "30000 µm", 30 mm?',
         ),
         (
             "rv",
             {"crank.support.torsion": True, "crank.support.spline_plane": -40e3},
-            r'^crank.support.spline_plane = -40000 mm is 1\d+ times the thickness of all discs .* "-40000 µm", -40 mm\?$',
+            'crank.support.spline_plane = -40000 mm is 1… times the thickness of all discs … "-40000 µm", -40 mm?',
         ),
         (
             "rv",
             {"crank.support.positions": (-0.022, 22.0)},
-            r'^crank.support.positions\[0\] = -0.022 mm .* "-0.022 m", -22',
+            'crank.support.positions[0] = -0.022 mm … "-0.022 m", -22…',
         ),
         (
             "rv",
             STIFF | {"load.external.0.force.x": 1e3, "load.external.0.at.z": 60e3},
-            r'^load.external.0.at.z = .* "60000 µm", 60 mm\?$',
+            'load.external.0.at.z = … "60000 µm", 60 mm?',
         ),
-        ("rv", {"main_bearing.radial_stiffness": 1000.0}, r'^main_bearing.radial_stiffness = 1000 N/mm .* "1000 N/µm"'),
+        ("rv", {"main_bearing.radial_stiffness": 1000.0}, 'main_bearing.radial_stiffness = 1000 N/mm … "1000 N/µm"…'),
         (
             "rv",
             {"main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 2e-5},
-            r"^main_bearing.clearance = .* finer",
+            "main_bearing.clearance = … finer…",
         ),
-        ("rv", {"crank.support.clearance": 1e-5}, r'^crank.support.clearance = .* finer .* mean "1e-05 m", 0.01 mm\?$'),
+        ("rv", {"crank.support.clearance": 1e-5}, 'crank.support.clearance = … finer … mean "1e-05 m", 0.01 mm?'),
         (
             "rv",
             TEETH | {"first_stage.backlash": 3e-5},
-            r'^first_stage.backlash = .* finer .* mean "3e-05 m", 0.03 mm\?$',
+            'first_stage.backlash = … finer … mean "3e-05 m", 0.03 mm?',
         ),
-        ("rv", TEETH | {"first_stage.mesh_stiffness": 200.0}, r'^first_stage.mesh_stiffness = 200 N/mm .* "200 N/µm"'),
+        ("rv", TEETH | {"first_stage.mesh_stiffness": 200.0}, 'first_stage.mesh_stiffness = 200 N/mm … "200 N/µm"…'),
         (
             "robot-joint",
             {"crank_bearing.dynamic_load_rating": 13.1},
-            r'^crank_bearing.dynamic_load_rating = 13.1 N is 1/.* mean "13.1 kN"\?$',
+            'crank_bearing.dynamic_load_rating = 13.1 N is 1/… mean "13.1 kN"?',
         ),
         (
             "robot-joint",
             {"load.speed": 90_000.0},
-            r'^load.speed = 90000 rpm turns the crank bearing of .* "90000 deg/s" \(15000 rpm\) or 1500 rpm\?$',
+            'load.speed = 90000 rpm turns the crank bearing of … "90000 deg/s" (15000 rpm) or 1500 rpm?',
         ),
         (
             "robot-joint",
             {"duty.0.torque": 400.0, "duty.0.speed": 1500.0, "duty.0.share": 1.0},
-            r"^duty.0.torque = 400 N",
+            "duty.0.torque = 400 N…",
         ),
     ],
 )
@@ -306,7 +304,7 @@ def test_plain_numbers_in_another_unit_are_pointed_out(shipped, changes, told):
     """All of these passed without a word."""
     (drive,) = parse_drive(shipped_drive(shipped), shipped).cases.values()
     (found,) = unit_warnings(with_fields(drive, changes))
-    assert re.search(told, found)
+    assert reads_as(told, found), found
 
 
 @pytest.mark.parametrize(
@@ -347,8 +345,8 @@ def test_limits_in_gigapascals_are_pointed_out():
         {"max_pin_pressure_mid": 1.5, "max_bore_stress": 4e8, "min_wall": 1.5, "max_pin_load": 1.5}, []
     )
     pressure, stress = limit_warnings(drive, limits.values())
-    assert re.search(r'^limits.max_pin_pressure_mid = 1.5 MPa .* mean "1.5 GPa" \(1500 MPa\)\?$', pressure)
-    assert re.search(r'^limits.max_bore_stress = 4e\+08 MPa .* mean "4e\+08 Pa" \(400 MPa\)\?$', stress)
+    assert reads_as('limits.max_pin_pressure_mid = 1.5 MPa … mean "1.5 GPa" (1500 MPa)?', pressure)
+    assert reads_as('limits.max_bore_stress = 4e+08 MPa … mean "4e+08 Pa" (400 MPa)?', stress)
     # TPU, 30 MPa, bears a twentieth of that.
     soft = with_fields(drive, {"materials.disc.youngs_modulus": 30.0}, check=False)
     assert limit_warnings(soft, limits.values())[:1] != [pressure]
@@ -434,7 +432,7 @@ def test_kelvin_that_seizes_a_drive_is_named():
     drive = next(iter(parse_drive(shipped_drive("robot-joint")).cases.values()))
     parts = ("disc", "wheel_pin", "roller", "inner_race", "shaft_pin")
     expands = {f"materials.{part}.thermal_expansion": 2.3e-5 for part in parts}
-    with pytest.raises(DriveError, match=r'^temperature.disc = 293 °C: .*kelvin are written "293 K"'):
+    with error_says(DriveError, 'kelvin are written "293 K"', starts="temperature.disc = 293 °C: "):
         analyse(with_fields(drive, expands | {"temperature.disc": 293.0}), ANGLE)
 
 
@@ -462,22 +460,22 @@ def test_commands_tell_what_was_probably_meant_before_they_work(command, vary, t
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        ({"disc.lead_slope": 0.005}, "disc.lead_slope = 0.005 rad is 59 µm over the width of a disc"),
+        ({"disc.lead_slope": 0.005}, "disc.lead_slope = 0.005 rad is 59 µm over the width of a disc…"),
         (
             {"pin_shaft.inclination.y": -0.004},
-            'pin_shaft.inclination.y = -0.004 rad is -47.2 µm over .* "-0.004°", "-0.004 mrad"',
+            'pin_shaft.inclination.y = -0.004 rad is -47.2 µm over … "-0.004°", "-0.004 mrad"…',
         ),
-        ({"pin_wheel.pin_errors.inclination_x.3": 0.01}, "pin_wheel.pin_errors.inclination_x = 0.01 rad is 118 µm over"),
-        ({"disc.lead_crown_drop": 0.4}, 'disc.lead_crown_drop = 0.4 mm is 400 µm on a disc 11.8 mm thick, .* "0.4 µm"'),
+        ({"pin_wheel.pin_errors.inclination_x.3": 0.01}, "pin_wheel.pin_errors.inclination_x = 0.01 rad is 118 µm over…"),
+        ({"disc.lead_crown_drop": 0.4}, 'disc.lead_crown_drop = 0.4 mm is 400 µm on a disc 11.8 mm thick, … "0.4 µm"…'),
         (
             {"disc.lead_relief_depth": 5e-6, "disc.lead_relief_length": 2.0},
-            r'disc.lead_relief_depth = 5e-06 mm is 0.005 µm, finer than machines hold; did you mean "5e-06 m", 0.005 mm\?',
+            'disc.lead_relief_depth = 5e-06 mm is 0.005 µm, finer than machines hold; did you mean "5e-06 m", 0.005 mm?…',
         ),
     ],
 )  # fmt: skip
 def test_leads_and_inclinations_of_another_unit(vary, words, told):
     (warning,) = unit_warnings(with_fields(vary(), {"contact.slices": 5} | words))
-    assert re.match(told, warning), warning
+    assert reads_as(told, warning), warning
 
 
 def test_usual_leads_and_inclinations_are_not_told(vary):

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_is
 from scipy.integrate import solve_ivp
 
 from ltca.dynamics.harmonic_balance import HillSystem, PulsatingStiffness, unstable_ranges
@@ -184,7 +185,7 @@ def test_damping_of_a_quarter_of_the_depth_ends_the_resonance():
 def test_a_balance_that_does_not_converge_is_told(monkeypatch):
     monkeypatch.setattr("ltca.dynamics.harmonic_balance.DIRECTIONS", 1)  # twice
     force = np.ones((ORDERS.size + 1, 1), dtype=complex)
-    with pytest.raises(ConvergenceError, match=r"no periodic motion found at 0\.31 rad/s of the crank"):
+    with error_is(ConvergenceError, "no periodic motion found at 0.31 rad/s of the crank"):
         system_of(mathieu(0.8)).respond(0.31, ORDERS, force)
 
 

@@ -7,6 +7,7 @@ from math import pi
 
 import numpy as np
 import pytest
+from refusals import refused_field
 from scipy.integrate import quad
 
 from ltca.commands.program import main
@@ -26,7 +27,6 @@ from ltca.dynamics.masses import (
     moved_section,
     section_within,
 )
-from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -163,7 +163,7 @@ def test_a_given_crank_needs_no_density():
 def test_eccentrics_have_the_density_of_the_crankshaft():
     light = with_fields(PAPER, {"materials.crankshaft.density": "2.8 g/cm³"})
     assert drive_masses(light).mass_of(CRANKS) == pytest.approx(2800e-12 * pi * 19.5**2 * 11.8, rel=ROUND_OFF)
-    with pytest.raises(DriveError, match=r"materials\.crankshaft: must be left out without crank\.support.*density"):
+    with refused_field("materials.crankshaft", "", "must be left out without crank.support", "density"):
         with_fields(PAPER, {"materials.crankshaft.youngs_modulus": 2e5})
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused_field
 
 from ltca.analysis.engines import HalfSpace
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
@@ -18,7 +19,6 @@ from ltca.dynamics.stiffness import levers
 from ltca.dynamics.teeth import Teeth
 from ltca.equilibrium.output_angle import crank_lag, wheel_angle_of_input
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
@@ -171,12 +171,12 @@ def test_either_flank_is_a_spring_behind_half_the_backlash():
 
 
 @pytest.mark.parametrize(
-    ("name", "words"),
+    ("name", "path", "value"),
     [
-        ("rigid teeth and cranks", r"first_stage\.backlash = 0\.03 mm: .*first_stage\.mesh_stiffness must be given"),
-        ("rigid teeth and cranks, posts", r"carrier\.posts: .*first_stage\.mesh_stiffness must be given"),
+        ("rigid teeth and cranks", "first_stage.backlash", "= 0.03 mm"),
+        ("rigid teeth and cranks, posts", "carrier.posts", ""),
     ],
 )
-def test_rigid_teeth_on_rigid_cranks_are_refused_by_name(name, words):
-    with pytest.raises(DriveError, match=words):
+def test_rigid_teeth_on_rigid_cranks_are_refused_by_name(name, path, value):
+    with refused_field(path, value, "first_stage.mesh_stiffness must be given"):
         prepared(name, Course.of_values("steady", 1.0, 1500.0))

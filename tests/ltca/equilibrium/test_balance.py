@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
@@ -153,7 +154,7 @@ def test_stagnation_is_an_error_with_its_history(models):
             looks.append(pose)
             return replace(found, force=found.force + np.array([0.0, 1e5 * (-1.0) ** len(looks), 0.0, 0.0]))
 
-    with pytest.raises(ConvergenceError, match=r"crank angle 0.1 rad .*residual in N") as caught:
+    with error_says(ConvergenceError, "crank angle 0.1 rad ", "residual in N") as caught:
         solve_equilibrium(Stubborn(discs=models["CS-1"].discs), np.array([0.1]), -1e5)
     assert len(caught.value.history) == 100
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 from scipy.optimize import brentq
 
 from ltca.analysis.loaded_analysis import analyse
@@ -90,7 +91,5 @@ def test_what_is_pressed_too_wide_by_its_fit_is_told_so(paper_cases):
     paper = paper_cases["CS-1"]
     wheel = replace(paper.pin_wheel, pin_radius=2.5)
     tight = replace(paper, pin_wheel=wheel, disc=replace(paper.disc, equidistant_offset=-0.24, shifting_offset=0.0))
-    with pytest.raises(
-        DriveError, match=r"disc.equidistant_offset = -0.24 mm: an overlap of 0.24 mm as drawn cannot be"
-    ):
+    with error_says(DriveError, "disc.equidistant_offset = -0.24 mm: an overlap of 0.24 mm as drawn cannot be"):
         analyse(tight, np.array([0.1]))

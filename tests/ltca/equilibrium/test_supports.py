@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import reads_as
 
 from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
@@ -308,67 +309,67 @@ def test_rows_by_hand(drives):
     [
         (
             {"main_bearing.radial_stiffness": 1e6, "pin_wheel.support_stiffness": 2e6},
-            r"^main_bearing\.radial_stiffness = 1e\+06 N/mm and pin_wheel\.support_stiffness = 2e\+06 N/mm: are two names",
+            "main_bearing.radial_stiffness = 1e+06 N/mm and pin_wheel.support_stiffness = 2e+06 N/mm: are two names…",
         ),
         (
             {"main_bearing.radial_stiffness": 1e6, "main_bearing.tilt_stiffness": 1e9},
-            r"^contact\.slices = 1: must be odd, 3 to 65, with main_bearing\.tilt_stiffness = 1e\+09 N·mm/rad: ",
+            "contact.slices = 1: must be odd, 3 to 65, with main_bearing.tilt_stiffness = 1e+09 N·mm/rad: …",
         ),
         (
             ROWS | {"main_bearing.preload": 1e3, "main_bearing.axial_stiffness": 1e6},
-            r"main_bearing\.axial_stiffness = 1e\+06 N/mm: must be left out beside main_bearing\.bearings, from which",
+            "…main_bearing.axial_stiffness = 1e+06 N/mm: must be left out beside main_bearing.bearings, from which…",
         ),
-        ({"main_bearing.clearance": 0.01}, r"main_bearing\.radial_stiffness: must be given"),
+        ({"main_bearing.clearance": 0.01}, "…main_bearing.radial_stiffness: must be given…"),
         (
             {"main_bearing.radial_stiffness": 1e6, "main_bearing.clearance": 0.01, "main_bearing.preload": 100.0},
-            r"main_bearing\.clearance = 0\.01 mm: must be left out beside main_bearing\.preload",
+            "…main_bearing.clearance = 0.01 mm: must be left out beside main_bearing.preload…",
         ),
         (
             {"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": {"force": 1.0, "displacement": 0.001}},
-            r"main_bearing\.preload: must be either a force",
+            "…main_bearing.preload: must be either a force…",
         ),
-        ({"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": "5 MPa"}, r"main_bearing\.preload\.force .* unit N"),
-        ({"main_bearing.radial_stiffness": 1e6, **ROWS}, r"main_bearing\.radial_stiffness = 1e\+06 N/mm: must be left out"),
-        (ROWS, r"main_bearing\.bearings\.0\.load_constant = 800000 N/mmⁿ: needs a preload"),
-        (ROWS | {"main_bearing.bearings.1.kind": "cylindrical"}, r"main_bearing\.bearings\.1\.contact_angle = 0\.35 rad"),
-        (ROWS | {"main_bearing.bearings.1.plane": -25.0}, r"must stand in different planes"),
+        ({"main_bearing.radial_stiffness": 1e6, "main_bearing.preload": "5 MPa"}, "…main_bearing.preload.force … unit N…"),
+        ({"main_bearing.radial_stiffness": 1e6, **ROWS}, "…main_bearing.radial_stiffness = 1e+06 N/mm: must be left out…"),
+        (ROWS, "…main_bearing.bearings.0.load_constant = 800000 N/mmⁿ: needs a preload…"),
+        (ROWS | {"main_bearing.bearings.1.kind": "cylindrical"}, "…main_bearing.bearings.1.contact_angle = 0.35 rad…"),
+        (ROWS | {"main_bearing.bearings.1.plane": -25.0}, "…must stand in different planes…"),
         (
             ROWS | {"main_bearing.preload": 1e3, **{
                 path.replace(".1.", ".2."): 50.0 if path.endswith("plane") else value
                 for path, value in ROWS.items() if ".1." in path
             }},
-            r"main_bearing\.bearings has 3 rows with contact angles: must have at most 2",
+            "…main_bearing.bearings has 3 rows with contact angles: must have at most 2…",
         ),
         (
             ROWS | {"main_bearing.bearings.0.preload": 1e3, "main_bearing.bearings.1.preload": 5e3},
-            r"main_bearing\.bearings\.0 and main_bearing\.bearings\.1: axial preloads of 1000 and 5000 N must be equal to 1 %",
+            "…main_bearing.bearings.0 and main_bearing.bearings.1: axial preloads of 1000 and 5000 N must be equal to 1 %…",
         ),
         (
             ROWS | {"main_bearing.preload": "5 µm", "main_bearing.bearings.1.load_constant": 9e5},
-            r"axial preloads of 2220 and 2498 N must be equal",
+            "…axial preloads of 2220 and 2498 N must be equal…",
         ),
         (
             {path: value for path, value in ROWS.items() if ".1." not in path} | {"main_bearing.preload": 1e3},
-            r"main_bearing\.preload: must be left out with one row with a contact angle \(main_bearing\.bearings\.0\)",
+            "…main_bearing.preload: must be left out with one row with a contact angle (main_bearing.bearings.0)…",
         ),
         (
             {path: value for path, value in ROWS.items() if ".1." not in path} | {"main_bearing.bearings.0.preload": 1e3},
-            r"main_bearing\.bearings\.0\.preload: must be left out with one row",
+            "…main_bearing.bearings.0.preload: must be left out with one row…",
         ),
         (
             ROWS | {"main_bearing.bearings.0.preload": 1e3, "main_bearing.bearings.1.load_constant": None,
                     "main_bearing.bearings.1.axial_stiffness": 5e5},
-            r"main_bearing\.bearings\.1\.preload: must be given beside main_bearing\.bearings\.0\.preload",
+            "…main_bearing.bearings.1.preload: must be given beside main_bearing.bearings.0.preload…",
         ),
-        (ROWS | {"main_bearing.bearings.3.plane": 0.0}, r"main_bearing\.bearings\.3: there is no entry 3"),
-        ({"crank.support.stiffness": ()}, r"crank\.support\.stiffness has 0 values: must have 2"),
+        (ROWS | {"main_bearing.bearings.3.plane": 0.0}, "…main_bearing.bearings.3: there is no entry 3…"),
+        ({"crank.support.stiffness": ()}, "…crank.support.stiffness has 0 values: must have 2…"),
         (
             {"crank.support.contact_angle": 0.2},
-            r"crank\.support\.stiffness: must be left out beside crank\.support\.contact_angle",
+            "…crank.support.stiffness: must be left out beside crank.support.contact_angle…",
         ),
         (
             {"crank.support.contact_angle": 0.2, "crank.support.load_constant": 1e5, "crank.support.stiffness": ()},
-            r"crank\.support\.preload: must be given with",
+            "…crank.support.preload: must be given with…",
         ),
     ],
 )  # fmt: skip
@@ -377,7 +378,7 @@ def test_bad_input_is_one_clear_line(rv, words, message):
         with_fields(rv, words)
     problems = caught.value.problems
     assert not any("\n" in problem for problem in problems)
-    assert any(re.search(message, problem) for problem in problems), problems
+    assert any(reads_as(message, problem) for problem in problems), problems
 
 
 def test_a_preload_reads_as_written():

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.errors import DriveError
 from ltca.export.flank_outline import FlankSpline
@@ -143,13 +144,13 @@ def test_parts_are_made_at_20_degrees(kinds_of_drives):
         ("paper", "disc", {"disc": 1}, "--disc 1: there is no such disc; disc.number_of_discs = 1, counted from 0"),
         ("paper", "pin-wheel", {"disc": 0}, "--disc 0: is for --part disc, not for pin-wheel"),
         ("paper", "assembly", {"compensation": 0.1}, "--compensate: is for parts that are made one by one"),
-        ("many", "disc", {"compensation": 0.9}, "--compensate 0.9 mm: must be less than .* convex radius of the flank"),
-        ("many", "disc", {"compensation": -0.9}, "--compensate -0.9 mm: must be less than .* concave radius"),
+        ("many", "disc", {"compensation": 0.9}, "--compensate 0.9 mm: must be less than … convex radius of the flank"),
+        ("many", "disc", {"compensation": -0.9}, "--compensate -0.9 mm: must be less than … concave radius"),
         ("sleeved", "pin-shaft", {"compensation": 0.8}, "--compensate 0.8 mm: nothing is left of shaft sleeve 0"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_exported_is_refused_by_name(kinds_of_drives, kind, part, arguments, told):
-    with pytest.raises(DriveError, match=told):
+    with error_says(DriveError, *told.split("…")):
         make_parts(kinds_of_drives[kind], "nominal", part, **arguments)
 
 
@@ -159,7 +160,7 @@ def test_holes_that_compensation_lets_cut_into_each_other(kinds_of_drives):
     shaft = replace(drive.pin_shaft, pin_circle_radius=40.0, hole_radius=14.4)
     wide = replace(drive, pin_shaft=shaft, crank_bearing=replace(drive.crank_bearing, outer_race_radius=20.0))
     assert make_parts(wide, "CS-1")
-    with pytest.raises(DriveError, match=r"--compensate 1 mm: hole \d and hole \d cut into each other by 0.1853 mm"):
+    with error_says(DriveError, "--compensate 1 mm: hole ", " and hole ", " cut into each other by 0.1853 mm"):
         make_parts(wide, "CS-1", compensation=1.0)
 
 
@@ -196,7 +197,7 @@ def test_flanges_stand_on_their_posts(kinds_of_drives):
     (part,) = make_parts(sleeved, "nominal", "carrier", compensation=0.1)
     assert features(part) == {"post": 3, "flange": 2, "flange-hole": 22}
     assert {hole.radius for hole in circles(part, "flange-hole") if abs(hole.centre) > 1.0} == {4.6}
-    with pytest.raises(DriveError, match=r"--part carrier: there is no carrier\.posts in this drive"):
+    with error_says(DriveError, "--part carrier: there is no carrier.posts in this drive"):
         make_parts(kinds_of_drives["paper"], "CS-1", "carrier")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from refusals import error_says
 
 import ltca
 from ltca.analysis import drive_curves, torque_curve
@@ -61,18 +62,18 @@ def test_limits_of_the_file_judge_the_pressure(monkeypatch):
         ({"speed": 0}, "speed = 0: must be greater than 0 rpm"),
         ({"lost_motion": "60 %"}, "lost_motion = '60 %': must be at least 0.001 and at most 0.5"),
         ({"load_rating": "4 mm"}, "load_rating = '4 mm': must have the unit N"),
-        ({"pressure_limit": [3]}, r"pressure_limit = \[3\]: must be a number in MPa"),
+        ({"pressure_limit": [3]}, "pressure_limit = [3]: must be a number in MPa"),
         ({"case": None}, "case: must be given"),
         ({"drive": "paper", "case": None}, "must be one Drive, not a str"),
         ({"compliance": "soft"}, "compliance = 'soft': is unknown"),
     ],
 )
 def test_what_makes_no_sense_is_refused_by_name(options, message):
-    with pytest.raises(DriveError, match=message):
+    with error_says(DriveError, message):
         ltca.curves(**({"drive": FILE, "case": "CS-1"} | options))
 
 
 def test_a_duty_has_its_own_speeds():
     text = shipped_drive().partition("\n[tolerances]")[0] + '\n[[duty]]\ntorque = "300 N m"\nspeed = 900\nshare = 1\n'
-    with pytest.raises(DriveError, match=r"speed: has no effect with \[\[duty\]\]"):
+    with error_says(DriveError, starts="speed: has no effect with [[duty]]"):
         ltca.curves(parse_drive(text, "mine"), speed=1000)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
+from refusals import error_is, error_says
 
 import ltca
 from ltca.analysis.pressure_fields import build_pressure_dataset
@@ -32,7 +33,7 @@ def test_it_is_the_contact_that_carries_most(result, contact):
     """Fields of loose and bent wheel pins carried five times their load: seat and beam had been pressed into the contact."""
     loads = result.dataset[LOADS[contact]].isel(case=0)
     if not loads.size:
-        with pytest.raises(DriveError, match="contact = 'hole': there is none in this drive"):
+        with error_is(DriveError, "contact = 'hole': there is none in this drive"):
             result.pressure(contact)
         return
     field = result.pressure(contact, cells=10)
@@ -93,7 +94,7 @@ def test_hybrid_bodies_have_it_too():
     fields = build_pressure_dataset("paper", {"CS-1": hybrid.loaded}, cells=6)  # what cyclo run --pressure writes
     xr.testing.assert_allclose(fields["pin_field_load"].max(), load, rtol=2e-5)
     plane = ltca.analyse(drive, crank_angle=[0.3], compliance="fe", coefficients=coefficients)
-    with pytest.raises(DriveError, match="compliance = fe: plane strain has no pressure over the width"):
+    with error_says(DriveError, starts="compliance = fe: plane strain has no pressure over the width"):
         plane.pressure()
 
 
@@ -109,7 +110,7 @@ def test_a_contact_is_chosen():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"contact": "pinn"}, "contact = 'pinn': is unknown; must be one of 'pin', .*did you mean `pin`"),
+        ({"contact": "pinn"}, "contact = 'pinn': is unknown; must be one of 'pin', …did you mean `pin`"),
         ({"contact": 3}, "contact = 3: is unknown"),
         ({"number": 14}, "number = 14: must be a whole number from 0 to 13"),
         ({"number": 1.5}, "number = 1.5: must be a whole number"),
@@ -127,5 +128,5 @@ def test_a_contact_is_chosen():
 )
 def test_what_makes_no_sense_is_refused_by_name(options, message):
     result = ltca.analyse(load_drive("paper").cases["CS-1"], crank_angle=ANGLES)
-    with pytest.raises(DriveError, match=message):
+    with error_says(DriveError, *message.split("…")):
         result.pressure(**options)

@@ -74,6 +74,28 @@ def test_every_contradiction_names_its_field_as_data():
     assert len(found) > 30
 
 
+def test_the_bound_of_a_contradiction_is_the_number_that_it_says():
+    """Tests read it in place of the sentence; a number is printed with two digits at least."""
+    found = set()
+    for row in ROWS:
+        if " on " in row["drive"] or row.get("before") or row.get("left_out"):
+            continue
+        base = next(iter(load_drive(row["drive"]).cases.values()))
+        try:
+            with_fields(base, row["changes"])
+        except DriveError as error:
+            problems = [problem for problem in error.problems if getattr(problem, "bound", None)]
+        for problem in problems:
+            relation, number = problem.bound
+            words = {"equal to": "must equal ", "": ""}.get(relation, f"{relation} ")
+            numbers = [text.split()[0].rstrip(",:;") for text in problem.said.split(words)[1:]]
+            assert any(float(text) == pytest.approx(number, rel=0.05) for text in numbers if text[0] in "-0123456789"), (
+                problem, problem.bound,
+            )  # fmt: skip
+            found.add(problem.path)
+    assert len(found) > 25, len(found)
+
+
 def test_an_error_carries_the_fields_of_its_mistakes_to_another_process():
     with pytest.raises(DriveError) as caught:
         PAPER.with_fields({"pin_shaft.hole_radius": 5.0, "clearance.bearing": 9.0})

@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from refusals import stands_in
 
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -13,16 +14,6 @@ from ltca.reading.drive_file import parse_drive, shipped_drive
 
 ROWS = tomllib.loads(Path(__file__).with_name("refused_changes.toml").read_text(encoding="utf-8"))["refused"]
 SHAFT_BEAM = 'beam = { span = 24.0, tip = "tied-clamped" }'
-
-
-def stands_in(pieces, text):
-    """Whether pieces of text stand in a text, one behind the other."""
-    at = 0
-    for piece in pieces:
-        if (at := text.find(piece, at)) < 0:
-            return False
-        at += len(piece)
-    return True
 
 
 def drive_named(name):

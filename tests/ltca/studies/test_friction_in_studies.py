@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 from ltca.commands.program import main
 from ltca.drive.parts import Friction
@@ -54,7 +55,7 @@ def test_quantities_of_friction_need_friction_and_a_speed():
     assert "mean_efficiency" in quantities_for(rubs, None)
     assert "power_loss" not in quantities_for(rubs, None)
     assert "power_loss" in quantities_for(with_fields(rubs, {"load.speed": 1500.0}), None)
-    with pytest.raises(DriveError, match=r"mean_efficiency: .* has no friction"):
+    with error_says(DriveError, "mean_efficiency: ", " has no friction"):
         quantities_for(drive, ("mean_efficiency",))
     assert SCALARS["mean_efficiency"].more_is_better
     assert not any(one.more_is_better for name, one in SCALARS.items() if name != "mean_efficiency")

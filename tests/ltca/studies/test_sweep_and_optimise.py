@@ -8,6 +8,7 @@ import tomllib
 import matplotlib as mpl
 import numpy as np
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.analysis.engines import Hybrid
 from ltca.analysis.loaded_analysis import analyse
@@ -103,7 +104,7 @@ def test_a_sweep_over_slices_has_what_the_plane_has_too(tmp_path):
     study = parse_sweep(table, str(path))
     assert "max_pin_face_load_factor" not in study.quantities
     assert "max_pin_load" in study.quantities
-    with pytest.raises(DriveError, match=r"max_pin_face_load_factor: .* with contact.slices = 1"):
+    with error_says(DriveError, "max_pin_face_load_factor: ", " with contact.slices = 1"):
         parse_sweep(table | {"quantities": ["max_pin_face_load_factor"]}, str(path))
 
 
@@ -111,7 +112,7 @@ def test_a_sweep_over_slices_has_what_the_plane_has_too(tmp_path):
 def test_fractions_of_a_pin_are_refused_before_the_work(kind):
     """A range of counts was drawn as fractions, which no drive takes: the samples failed one by one."""
     head = f'design = {{ kind = "{kind}", samples = 4 }}\n[factors]\n"pin_shaft.number_of_pins" = '
-    with pytest.raises(DriveError, match=r"^study: factors\.pin_shaft\.number_of_pins: takes whole numbers, [^\n]*$"):
+    with refused_field("factors.pin_shaft.number_of_pins", "", "takes whole numbers, ", alone=True, source="study"):
         parse_sweep(tomllib.loads(f"{head}{{ low = 6, high = 10 }}"), "paper")
     for whole in ("[6, 7, 8]", "{ low = 6, high = 10, levels = 5 }"):
         assert parse_sweep(tomllib.loads(f"{head}{whole}"), "paper").samples_of(0) == (0, 4)
@@ -300,7 +301,7 @@ def test_replacing_fields_keeps_the_rest(drive):
     own = with_fields(changed, {"disc.of.1.runout.amount": 0.003, "disc.of.1.clearance.bearing": 0.02})
     assert [single.disc.runout.amount for single in single_discs(own)] == [drive.disc.runout.amount, 0.003]
     assert [single.clearance.bearing for single in single_discs(own)] == [drive.clearance.bearing, 0.02]
-    with pytest.raises(DriveError, match=r"disc\.of has 2 entries: must have 3"):
+    with error_says(DriveError, "disc.of has 2 entries: must have 3"):
         with_fields(own, {"disc.number_of_discs": 3})
     with pytest.raises(DriveError, match=r"there is no disc 2"):
         with_fields(changed, {"disc.of.2.runout.amount": 0.003})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from refusals import error_says
 
 from ltca.errors import DriveError
 from ltca.quantities import LIMITED
@@ -113,7 +114,7 @@ def test_a_bearing_has_any_name():
     ],
 )
 def test_what_cannot_be_added_is_refused_by_name(table, key, value, told):
-    with pytest.raises(DriveError, match=told):
+    with error_says(DriveError, told):
         with_named_entry(PAPER, table, key, value)
 
 

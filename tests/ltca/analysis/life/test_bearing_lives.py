@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import error_says
 
 import ltca.analysis.life.bearing_lives as module
 import ltca.analysis.life.passages as passages
@@ -376,5 +377,5 @@ def test_what_tells_no_life_is_refused(paper_cases, monkeypatch):
             raise error
 
         monkeypatch.setattr(module, "analyse", refuse)
-        with pytest.raises(type(error), match=r"duty\.0\.torque = 1e\+06 N·mm: (torque|no equi)"):
+        with error_says(type(error), starts=f"duty.0.torque = 1e+06 N·mm: {str(error)[:7]}"):
             bearing_lives(solved)

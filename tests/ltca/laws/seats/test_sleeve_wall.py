@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import error_is
 
 from ltca.drive.parts import Material
 from ltca.errors import DriveError
@@ -107,5 +108,5 @@ def test_the_datum_of_the_load_outside():
 
 
 def test_a_sleeve_needs_a_wall():
-    with pytest.raises(DriveError, match=r"outer radius 1\.5 mm of a sleeve: must be greater than 1\.51 mm, its bore"):
+    with error_is(DriveError, "outer radius 1.5 mm of a sleeve: must be greater than 1.51 mm, its bore"):
         law_of(1.5, datum=1.0)

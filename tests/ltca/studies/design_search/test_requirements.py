@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from refusals import error_says, refused_field
 
 from ltca.commands.program import main
 from ltca.errors import DriveError
@@ -47,7 +48,7 @@ def test_one_clear_sentence_for_each_mistake(row):
 
 
 def test_missing_field_and_its_misspelling_are_one_mistake():
-    with pytest.raises(DriveError, match="did you mean `outer_diameter`, which is missing"):
+    with error_says(DriveError, "did you mean `outer_diameter`, which is missing"):
         parse_requirements(SOUND.replace("outer_diameter", "outer_diametre"))
 
 
@@ -76,7 +77,7 @@ def test_an_rv_reducer_has_two_discs_where_nothing_is_said():
     asked = parse_requirements(SOUND + 'kind = "rv"\n').asked
     assert asked.numbers_of_discs == (2,)
     assert parse_requirements(SOUND).asked.numbers_of_discs == (1, 2)
-    with pytest.raises(DriveError, match=r"shop\.pin_hole_clearance: must be left out"):
+    with refused_field("shop.pin_hole_clearance", "", "must be left out"):
         parse_requirements(SOUND + 'kind = "rv"\n[shop]\npin_hole_clearance = 0.01\n')
 
 
