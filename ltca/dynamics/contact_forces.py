@@ -1,14 +1,4 @@
-r"""Forces of contacts and supports of a drive at one instant, over the coordinates of its motion (``docs/theory/motion.md``).
-
-The contacts are those of equilibria (`ltca.mechanics.contacts`), asked for one position with the crank angle behind its pose:
-with it go the cages, whose work is part of the force on it. Each call starts from where the last one says that places of
-rollers, deformations and displaced pins have come to; answers do not depend on the start beyond their tolerances.
-
-Friction works against the slip that a contact has in motion, :math:`v = s_q \dot q + s_\varphi \dot\varphi`, by
-:math:`\mu F v/\sqrt{v^2 + v_0^2}`; rolling resistance likewise with the speed of the crank, and the drag of seals and oil
-with that of the input. A force G from outside on the wheel, displaced by w against the shaft, works by
-:math:`G \cdot (\dot w + i \omega w)` in a frame that turns by ω.
-"""
+"""Forces of contacts and supports of a drive at one instant, over the coordinates of its motion (``docs/theory/motion.md``)."""
 
 from __future__ import annotations
 
@@ -37,16 +27,12 @@ FADING = 1e-2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instant:
-    """Forces at one instant over all coordinates, N and N·mm: ∂U/∂x of contacts and supports, what has to overcome friction, and
-    what acts on the output from outside.
+    """Forces at one instant over all coordinates, N and N·mm."""
 
-    The stiffness is Σ k g gᵀ of contacts and springs: symmetric, without what forces add as they turn.
-    """
-
-    force: FloatArray
-    friction: FloatArray
-    outside: FloatArray
-    stiffness: FloatArray
+    force: FloatArray  # ∂U/∂x of contacts and supports
+    friction: FloatArray  # to be overcome
+    outside: FloatArray  # on the output
+    stiffness: FloatArray  # Σ k g gᵀ of contacts and springs, symmetric
     contacts: Linearised
     teeth: TeethForces | None
 
@@ -62,11 +48,7 @@ class Instant:
 
 
 class ContactForces:
-    """Forces of the contacts and supports of a drive, followed in time; friction fades by the speed of the crank, rad/s.
-
-    `start` are the inner unknowns from which the next call starts; those of contact grids are not of use elsewhere, see
-    `forget_grids`.
-    """
+    """Forces of contacts and supports of a drive, followed in time from `start`; friction fades by `crank_speed`, rad/s."""
 
     def __init__(self, model: Reducer, motion: Motion, crank_speed: float) -> None:
         friction = model.friction
@@ -124,9 +106,7 @@ class ContactForces:
             force[: pose.size] += held[0]
             stiffness[: pose.size, : pose.size] += stiff.reshape(pose.size, pose.size)
         outside, on_wheel = self._outside(angle, pose)
-        rubbed = np.zeros(x.size)
-        if friction is not None:
-            rubbed = self._rubbed(friction, contacts, pushes, rate, rolls, on_wheel)
+        rubbed = self._rubbed(contacts, pushes, rate, rolls, on_wheel)
         return Instant(
             force=force, friction=rubbed, outside=outside, stiffness=stiffness, contacts=contacts, teeth=teeth
         )
@@ -160,17 +140,13 @@ class ContactForces:
         return found, force
 
     def _rubbed(
-        self,
-        friction: TurningFriction,
-        contacts: Linearised,
-        pushes: Sequence[ComplexArray],
-        rate: FloatArray,
-        rolls: float,
-        on_wheel: complex,
+        self, contacts: Linearised, pushes: Sequence[ComplexArray], rate: FloatArray, rolls: float, on_wheel: complex
     ) -> FloatArray:
         """Force that has to overcome friction, shape (n,); `on_wheel` is that from outside, N."""
         motion, place, pins = self._motion, self._model.discs[0].geometry.placement, contacts.system.pins
-        total, turning = np.zeros(motion.size), float(rate[motion.crank])
+        friction, total, turning = self._friction, np.zeros(motion.size), float(rate[motion.crank])
+        if friction is None:
+            return total
         slow = FADING * float(place.mean_eccentricity.ravel()[0]) * self._speed
         rubs = np.repeat((friction.pin, friction.hole), (pins, contacts.system.holes))
         for number, (columns, push) in enumerate(zip(contacts.system.columns, pushes, strict=True)):
@@ -219,9 +195,7 @@ def _on_wheel(contacts: Linearised, disc: int, rubbed: FloatArray) -> complex:
 
 
 def _slip(contacts: Linearised, disc: int) -> FloatArray:
-    """Slip of wheel pins, then shaft pins, by the pose where each is loaded, shape (pairs, k): in slices leans move it as well,
-    by as far as its load is off the middle.
-    """
+    """Slip of wheel pins, then shaft pins, by the pose where each is loaded, off the middle in slices, shape (pairs, k)."""
     each, pins = contacts.discs[disc], contacts.system.pins
     slip = Slip.of_disc(each.geometry, contacts.angle, each.pose, each).by_pose[0]
     if each.tilts is not None:

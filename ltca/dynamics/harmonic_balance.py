@@ -1,28 +1,7 @@
-r"""Linear motion on a stiffness that pulses with the crank angle: Hill's equation of several coordinates.
+"""Linear motion on a stiffness that pulses with the crank angle: Hill's equation (``docs/theory/vibrations.md``).
 
-In the frame that turns with the crank at the speed :math:`\dot\varphi`,
-
-.. math:: M D^2 Y + C \dot Y + K(\varphi) Y = f(\varphi), \quad D = \frac{d}{dt} + \dot\varphi J
-
-with a stiffness that comes again after a turn. Whole orders below half the positions of a turn are balanced together: inertia,
-spin and damping act on orders, the stiffness at positions (alternating by FFT). GMRES solves them, preconditioned from the
-left or, where that does not end, from the right. The preconditioner lets motions b, whose inertia does not count, answer at
-every position at once,
-
-.. math:: b = K_{bb}^{-1} (f_b - K_{ba} a), \quad K_{eff} = K_{aa} - K_{ab} K_{bb}^{-1} K_{ba} ,
-
-and solves the others, a, directly over the turn: between positions they move freely on the mean of what they feel,
-:math:`\dot z = A z`, and at each one the force and what :math:`K_{eff}` is beside that mean push them,
-:math:`z_{k+1} = e^{Ah} (z_k + h M^{-1} (f_k - \Delta K_k a_k))`, with :math:`a_k = S z_k` less what pushes at positions hold of
-orders beyond them. Positions are eliminated two by two.
-
-Orders of a force that are no whole numbers (rollers that pass, pins with errors) answer by the mean stiffness.
-
-By the same pulsation a drive is unstable where an order o meets the sum of two eigenfrequencies (Hsu, J. Appl. Mech. 30 (1963)
-367–372; Nayfeh and Mook, Nonlinear Oscillations, 1979, sec. 5.5), to first order of the pulsation where
-
-.. math:: |o \dot\varphi - \omega_i - \omega_j| < (\mu_i + \mu_j) \sqrt{g/(\mu_i \mu_j) - 1}, \quad
-          g = \frac{|x_i^T K_o x_j|^2}{16\, \omega_i \omega_j}, \quad \mu = \zeta \omega .
+Whole orders below half the positions of a turn are balanced together by GMRES, others answer by the mean stiffness. The
+preconditioner solves slow motions (`_PushedMotion`) on a stiffness at which others answer at every position at once (`_Split`).
 """
 
 from __future__ import annotations
@@ -38,11 +17,11 @@ from ltca.arrays import ComplexArray, FloatArray
 from ltca.errors import ConvergenceError
 
 SOLVED = 1e-9
-"""Part of a force that a balance may leave, in displacements or as a force."""
+"""Relative residual of a balance, in displacements or as a force."""
 DIRECTIONS, CYCLES = 60, 2
-"""Of GMRES at most: each strong resonance takes some. Beyond, many modes are coupled over many orders."""
+"""Limits of GMRES: each strong resonance takes some directions."""
 BEYOND = 2.0
-"""Eigenfrequency by that of the highest order from which motions answer at every position at once in the preconditioner."""
+"""Eigenfrequency by that of the highest order from which motions answer at every position at once."""
 FINER = 2
 """Pushes of slow motions by positions of a turn."""
 RESOLVED = 0.9 * FINER
@@ -68,26 +47,19 @@ class PulsatingStiffness:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HillSystem:
-    """What vibrates, seen from the crank: M, t, C, N·s/mm, J, and K(φ), whose mean has a loss factor η: K̄ (1 + iη).
+    """A vibrating system seen from the crank, M D² Y + C Ẏ + K(φ) Y."""
 
-    `basis` spans the motions that are free, as displacements, shape (n, m), `steady` those of them that are free on average of a
-    turn, shape (m, k). `splits` keeps slow motions and those beside them by how many are slow, from speed to speed.
-    """
-
-    mass: FloatArray
-    damping: FloatArray
-    spin: FloatArray
-    loss_factor: float
+    mass: FloatArray  # M, t
+    damping: FloatArray  # C, N·s/mm
+    spin: FloatArray  # J
+    loss_factor: float  # η of the mean stiffness, K̄ (1 + iη)
     stiffness: PulsatingStiffness
-    basis: FloatArray
-    steady: FloatArray
+    basis: FloatArray  # of the free motions, as displacements, shape (n, m)
+    steady: FloatArray  # those of them that are free on average of a turn, shape (m, k)
     splits: dict[int, _Split] = field(default_factory=dict, init=False, compare=False, repr=False)
 
     def compliance(self, speed: float, orders: FloatArray) -> ComplexArray:
-        """Return what the mean stiffness yields at a speed of the crank, rad/s, over the free motions, shape (orders, m, m).
-
-        Orders are not negative, and zero is the first.
-        """
+        """Return the compliance of the mean stiffness at a speed of the crank, rad/s, shape (orders, m, m), order 0 first."""
         whole = self._moving(speed, orders) + self.basis.T @ self.stiffness.mean @ self.basis
         at_rest = self.steady @ np.linalg.inv(self.steady.T @ whole[0].real @ self.steady) @ self.steady.T
         return np.concatenate((at_rest[None], np.linalg.inv(whole[1:])))
@@ -108,22 +80,9 @@ class HillSystem:
         pulsates: bool = True,
         highest: int | None = None,
     ) -> ComplexArray:
-        """Return amplitudes of the motion under those of a force, shape (1 + orders, n): its mean, then a of Re a·exp(i·order·φ).
+        """Return amplitudes of the motion under those of a force, shape (1 + orders, n): mean, then a of Re a·exp(i·order·φ).
 
-        ConvergenceError where the pulsation is not balanced in `DIRECTIONS`.
-
-        Parameters
-        ----------
-        speed : float
-            Of the crank, rad/s.
-        orders : array, shape (orders,)
-            1, 2, … `PulsatingStiffness.orders`, then those that are no whole numbers.
-        force : array of complex, shape (1 + orders, n)
-            Mean of the force, real, and its amplitudes.
-        pulsates : bool
-            Whether the stiffness does; without, its mean answers.
-        highest : int, optional
-            Whole order from which on the motion is cut off; all are taken by default.
+        Whole orders come first, all that `stiffness` resolves; those from `highest` on are cut off.
         """
         compliance = self.compliance(speed, np.concatenate(([0.0], orders)))
         still = np.einsum("oij,oj->oi", compliance, force @ self.basis)
@@ -148,7 +107,9 @@ class HillSystem:
         mean, mass = stiffness.mean(axis=0), basis.T @ self.mass @ basis
         held = self.steady @ self.steady.T
         split, resolved = (self._split(stiffness, mean, mass, part * whole * speed) for part in (BEYOND, RESOLVED))
-        answers = _inverses(split.slow.T @ moving @ split.slow + split.condensed.mean(axis=0))
+        on_slow = split.slow.T @ moving @ split.slow + split.condensed.mean(axis=0)
+        # At order zero the turning of a whole drive may have no stiffness.
+        answers = np.concatenate((np.linalg.pinv(on_slow[:1]), np.linalg.inv(on_slow[1:])))
         slow = resolved.slow
         over_turn = _PushedMotion.over_turn(
             _at_positions(resolved.condensed, FINER * samples),
@@ -223,23 +184,15 @@ def _at_positions(values: FloatArray, samples: int) -> FloatArray:
     return np.asarray(np.fft.irfft(orders, samples, axis=0, norm="forward"))
 
 
-def _inverses(matrices: ComplexArray) -> ComplexArray:
-    """Inverses by order; at order zero, where the turning of a whole drive may have no stiffness, a generalised one."""
-    return np.concatenate((np.linalg.pinv(matrices[:1]), np.linalg.inv(matrices[1:])))
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Split:
-    """Slow motions a, as columns, and those beside them, b, which answer at every position at once.
+    """Slow motions a and those beside them, b = K_bb⁻¹ (f_b − K_ba a), without inertia; K_eff = K_aa − K_ab K_bb⁻¹ K_ba."""
 
-    `motions` are both, a first; `at_once`, `across` and `condensed` are K_bb⁻¹, K_bb⁻¹ K_ba and K_eff at every position.
-    """
-
-    slow: FloatArray
-    motions: FloatArray
-    at_once: FloatArray
-    across: FloatArray
-    condensed: FloatArray
+    slow: FloatArray  # a, as columns
+    motions: FloatArray  # a, then b
+    at_once: FloatArray  # K_bb⁻¹ at every position
+    across: FloatArray  # K_bb⁻¹ K_ba
+    condensed: FloatArray  # K_eff
 
     @classmethod
     def of(cls, stiffness: FloatArray, mass: FloatArray, slow: FloatArray) -> _Split:
@@ -252,7 +205,7 @@ class _Split:
         return cls(slow=slow, motions=motions, at_once=at_once, across=across, condensed=condensed)
 
     def answer(self, force: FloatArray, slowly: Callable[[FloatArray], FloatArray]) -> FloatArray:
-        """Motion under forces at the positions, of which the slow ones are told what pushes them."""
+        """Motion under forces at the positions; `slowly` answers those on slow motions."""
         count = self.slow.shape[1]
         turned: FloatArray = force @ self.motions
         moved = slowly(turned[:, :count] - np.einsum("pba,pb->pa", self.across, turned[:, count:]))
@@ -262,17 +215,16 @@ class _Split:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _PushedMotion:
-    """Motions over a turn that positions push: z_{k+1} = F_k z_k + G_k f_k, a_k = P_k (S z_k − D f_k), D of orders beyond them.
+    """Motions over a turn that positions push: z_{k+1} = F_k z_k + G_k f_k, a_k = P_k (S z_k − D f_k).
 
-    `levels` are F of single positions, of two together, of four, …; the first are filled up with ones to a power of two.
-    `closing` is (1 − F of the turn)⁻¹; `push`, `direct` and `here` are G, D and P.
+    Between positions they move freely on the mean, F = e^{Ah} (1 − h M⁻¹ ΔK P S); positions are eliminated two by two.
     """
 
-    levels: tuple[FloatArray, ...]
-    closing: FloatArray
-    push: FloatArray
-    direct: FloatArray
-    here: FloatArray
+    levels: tuple[FloatArray, ...]  # F of one, two, four … positions, filled up with ones
+    closing: FloatArray  # (1 − F of the turn)⁻¹
+    push: FloatArray  # G
+    direct: FloatArray  # D, of orders that positions do not resolve
+    here: FloatArray  # P
 
     @classmethod
     def over_turn(
@@ -356,7 +308,7 @@ def _beside(motions: FloatArray, mass: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnstableRange:
-    """Speeds, rad/s, of the crank at which an order of the stiffness shakes two modes up, or one twice, to first order."""
+    """Speeds, rad/s, of the crank at which an order of the stiffness excites two modes, or one twice, to first order."""
 
     slowest: float
     fastest: float
@@ -367,9 +319,13 @@ class UnstableRange:
 def unstable_ranges(
     stiffness: PulsatingStiffness, frequency: FloatArray, shapes: FloatArray, damping_ratio: float, fastest: float
 ) -> tuple[UnstableRange, ...]:
-    """Return speeds of the crank up to a fastest one, rad/s, at which parametric resonances grow, ascending.
+    r"""Return speeds of the crank up to a fastest one, rad/s, at which parametric resonances grow, ascending.
 
-    Modes are those of the mean stiffness, of frequencies ω > 0, rad/s, mass-normalised, shape (n, modes), and damped alike.
+    Modes, mass-normalised, shape (n, modes), are damped alike. An order o meets two of them (Hsu, J. Appl. Mech. 30 (1963)
+    367–372; Nayfeh and Mook, Nonlinear Oscillations, 1979, sec. 5.5) where
+
+    .. math:: |o \dot\varphi - \omega_i - \omega_j| < (\mu_i + \mu_j) \sqrt{g/(\mu_i \mu_j) - 1}, \quad
+              g = \frac{|x_i^T K_o x_j|^2}{16\, \omega_i \omega_j}, \quad \mu = \zeta \omega .
     """
     found, damped = [], damping_ratio * frequency
     # K_o of Re K_o·exp(i·o·φ), orders 1, 2, …

@@ -1,13 +1,4 @@
-r"""Kinetic energy of a drive in motion, and its inertia forces (``docs/theory/motion.md``).
-
-Every body has the velocity :math:`z = r(\varphi)\dot x + i\,(f\dot x)\,D(\varphi)x`: what its row gives at the place where it
-nominally stands, and what the turning frame of a held wheel adds because the pose displaces it there. Rows are
-:math:`a + c\,e^{i\varphi}`, since eccentrics go round and nothing else does. Inertia forces are those of Lagrange's equations,
-:math:`M\ddot x + \dot M\dot x - \partial T/\partial x`. A disc that leans by l in a frame which turns, and spins at
-:math:`\nu\dot x` about its leaning axis, adds to second order in l, J being its moment of inertia about that axis,
-
-.. math:: T_g = -\tfrac12 J\,(\nu\dot x)\left[(f\dot x)\,|l|^2 + l \times \dot l\right] .
-"""
+"""Kinetic energy of a drive in motion, and its inertia forces (``docs/theory/motion.md``)."""
 
 from __future__ import annotations
 
@@ -27,14 +18,11 @@ QUARTERS = 0.0, 0.5 * np.pi, np.pi
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeaningSpin:
-    """A body with the moment of inertia J about its own axis, t·mm², that spins by the row `turns` while this axis leans.
+    """A body that spins about its own axis while this leans, T_g = −½ J (ν ẋ) [(f ẋ) |l|² + l × l̇]."""
 
-    `lean` is the place of the first of the two coordinates of its lean.
-    """
-
-    inertia: float
-    turns: FloatArray
-    lean: int
+    inertia: float  # J, t·mm²
+    turns: FloatArray  # row ν
+    lean: int  # place of the first of the two coordinates of l
 
     def add(self, frame: FloatArray, x: FloatArray, rate: FloatArray, matrix: FloatArray, bias: FloatArray) -> None:
         """Add its part of the mass matrix and of the inertia forces besides M ẍ, in place (`KineticEnergy.at`)."""
@@ -51,17 +39,13 @@ class LeaningSpin:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class KineticEnergy:
-    """Kinetic energy of a drive: `crank` is the place of the crank angle, `frame` the row f of the rotation of the frame.
+    """Kinetic energy of a drive; matrices are mean, cosine and sine part over the crank angle, shape (3, n, n)."""
 
-    The others are mean, cosine and sine part over the crank angle, shape (3, n, n), of the mass matrix of bodies where they
-    nominally stand, of G = Σ m Re(rᴴ i D) and of H = Σ m Re(Dᴴ D).
-    """
-
-    crank: int
-    frame: FloatArray
-    mass: FloatArray
-    turned: FloatArray
-    displaced: FloatArray
+    crank: int  # place of the crank angle
+    frame: FloatArray  # row f of the rotation of the frame
+    mass: FloatArray  # of bodies where they nominally stand
+    turned: FloatArray  # G = Σ m Re(rᴴ i D)
+    displaced: FloatArray  # H = Σ m Re(Dᴴ D)
     spins: tuple[LeaningSpin, ...] = ()
 
     @classmethod
@@ -87,10 +71,7 @@ class KineticEnergy:
         displaces: FloatArray,
         spins: tuple[LeaningSpin, ...] = (),
     ) -> KineticEnergy:
-        """Return the kinetic energy of bodies from their rows at `QUARTERS`.
-
-        `displaces` is 1 at coordinates that displace bodies in the frame, shape (n,).
-        """
+        """Return the kinetic energy by rows of bodies at `QUARTERS`; `displaces` is 1 at coordinates that displace them."""
         each = []
         for bodies in at_quarters:
             size, row = np.array([[body.size] for body in bodies]), np.array([body.row for body in bodies])
@@ -103,10 +84,7 @@ class KineticEnergy:
         return cls(crank=crank, frame=frame, mass=mass, turned=turned, displaced=displaced, spins=spins)
 
     def at(self, x: FloatArray, rate: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the mass matrix and the inertia forces besides M ẍ, shapes (n, n) and (n,).
-
-        `x` and `rate` are coordinates, mm and rad, and their rates, mm/s and rad/s, shape (n,).
-        """
+        """Return the mass matrix and the inertia forces besides M ẍ, shapes (n, n) and (n,)."""
         cosine, sine = np.cos(x[self.crank]), np.sin(x[self.crank])
 
         def over(parts: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,14 +1,4 @@
-r"""Coordinates of a drive in motion, its mass matrix, and its inertia referred to input and output.
-
-Velocities are those in the frame of the held member. In the frame of the pin shaft stand discs, cranks and wheel
-(`ltca.geometry.coordinates`); the crank angle :math:`\varphi_C` is a coordinate as well, the sun where teeth of a first stage
-yield, and the twist of the carrier where it has one. The frame itself turns by the twist where the pin shaft is held, and by
-:math:`-(\varphi_C/u + w)` where the wheel is held, whose displacements and angle w are those relative to the shaft. Each body
-brings rows z and r of its velocity and its rotation to :math:`M = \sum m\, \mathrm{Re}(z^H z) + \sum J\, r^T r`.
-
-Rollers move by the mean of race and bore; their cage turns by `cage_speed`, they roll on the bore. Pins, sleeves, ring and posts
-are rigid with wheel and shaft, shafts of cranks bend as their stiffness lets them. Leans of cranks and wheel have no mass.
-"""
+"""Coordinates of a drive in motion, its mass matrix, and its inertia referred to input and output (``docs/theory/motion.md``)."""
 
 from __future__ import annotations
 
@@ -43,23 +33,18 @@ from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
 OF_SHAFT = (SHAFT_PINS, SLEEVES[SHAFT_PINS], POSTS)
 INPUT, OUTPUT, CARRIER, WHEEL = "input", "output", "carrier and shaft pins", "wheel pins"
-"""Bodies beside discs, rollers and cranks, as modes name them."""
+"""Names of bodies beside discs, rollers and cranks."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """Coordinates of a vibrating drive: those of the pose, then the crank angle, the sun, the twist of the carrier.
-
-    The cranks rotate against the sun by `mesh_compliance` times the moment of all of them, rad/(N·mm), 0 of rigid teeth, and by
-    the coordinates of the pose, rad by mm or rad, shape (pose,). The carrier resists its twist by `twist_stiffness`, N·mm/rad, 0
-    of a rigid one.
-    """
+    """Coordinates of a vibrating drive: those of the pose, then the crank angle, the sun, the twist of the carrier."""
 
     drive: Drive
     pose: Coordinates
-    mesh_compliance: float
-    mesh_by_pose: FloatArray
-    twist_stiffness: float
+    mesh_compliance: float  # of cranks against the sun by all their moments, rad/(N·mm), 0 of rigid teeth
+    mesh_by_pose: FloatArray  # their rotation by the pose, rad by mm or rad
+    twist_stiffness: float  # of the carrier, N·mm/rad, 0 of a rigid one
 
     @classmethod
     def of_drive(cls, drive: Drive) -> Motion:
@@ -176,17 +161,13 @@ class Motion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """A mass, t, or where it `turns` a moment of inertia about z, t·mm², with the row of its velocity by rates of coordinates.
-
-    The row is that of x + iy, of a rotation, or of a lean in one direction. Of a moment of inertia about a line in the plane
-    `across` is the row of the lean across, which a frame that turns by 1 rad adds; None of others.
-    """
+    """A mass or a moment of inertia, about z or about a line in the plane, with the row of its velocity."""
 
     name: str
-    turns: bool
-    size: float
-    row: ComplexArray
-    across: ComplexArray | None = None
+    turns: bool  # about z
+    size: float  # t, t·mm²
+    row: ComplexArray  # of x + iy, of a rotation, or of a lean in one direction, by rates of coordinates
+    across: ComplexArray | None = None  # row of the lean across, of a moment of inertia about a line in the plane
 
     @property
     def leans(self) -> bool:
@@ -228,10 +209,7 @@ def mass_matrix(bodies: Sequence[Body]) -> FloatArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReflectedInertia:
-    """Moment of inertia of all parts that move, as rigid ones, referred to input and output, t·mm².
-
-    Given inertias in front of the drive and behind it are apart, each at its own place; 0 where there is none.
-    """
+    """Moment of inertia of all parts that move, as rigid ones, t·mm², and those given in front and behind, 0 of none."""
 
     at_input: float
     at_output: float
@@ -362,7 +340,7 @@ def _shaft(motion: Motion, solid: Solid) -> Iterator[Body]:
 
 
 def _members(motion: Motion, masses: DriveMasses) -> Iterator[Body]:
-    """What is rigid with the wheel, and what with the pin shaft."""
+    """The parts that are rigid with the wheel, and with the pin shaft."""
     axis, still = complex(masses.places[0].wheel_axis), np.zeros(motion.size)
     for name, groups, moves, turns in (
         (WHEEL, OF_WHEEL, motion.wheel_moves, motion.wheel_turns),
@@ -376,7 +354,7 @@ def _members(motion: Motion, masses: DriveMasses) -> Iterator[Body]:
 
 
 def _given(motion: Motion) -> Iterator[Body]:
-    """What turns in front of the drive and behind it."""
+    """The inertias in front of the drive and behind it."""
     given = motion.drive.inertia
     if given is None:
         return

@@ -12,7 +12,7 @@ from ltca.dynamics.kinetics import reflected_inertia
 from ltca.dynamics.masses import CRANKS, DISCS, INERTIA, TONNE_PER_KG, DriveMasses, Unbalance, drive_masses
 
 GRAM = 1e-3 * TONNE_PER_KG
-"""t of a gram."""
+"""A gram in t."""
 NAMES = (
     "mass", "disc_mass", "disc_inertia", "static_unbalance", "couple_unbalance", "reflected_inertia_input",
     "reflected_inertia_output",

@@ -1,13 +1,7 @@
-r"""Volume, mass, centre and inertia of every part of a drive, and the unbalance of its discs.
+"""Volume, mass, centre and inertia of every part of a drive, and the unbalance of its discs.
 
-Parts are plane sections between two heights, as they stand at crank angle 0 in the frame of the pin shaft, z as in
-``disc.planes``; lengths are those at 20 °C, since warmth changes no mass. Integrals over a section are those along its edge: of
-a function f homogeneous of degree k
-
-.. math:: \int f\, dA = \frac{1}{k+2} \oint f\, (x\, dy - y\, dx) ,
-
-on which the trapezoidal rule is exact to round-off, as for every smooth closed curve. Pins and rollers are cylinders: crowns,
-reliefs and inclinations are micrometres. Inside the suite the unit of mass is the tonne, which is N·s²/mm.
+Parts are plane sections between two heights, at crank angle 0 in the frame of the pin shaft, at 20 °C; pins and rollers are
+cylinders. The unit of mass is the tonne, N·s²/mm.
 """
 
 from __future__ import annotations
@@ -32,12 +26,11 @@ DENSITY = 1e-12
 INERTIA = 1e3
 """t·mm² of 1 kg·m²."""
 POINTS_PER_LOBE = 400
-"""Of the trapezoidal rule along a flank; half as many change the area by round-off."""
+"""Points of the trapezoidal rule along a flank; half as many change the area by round-off."""
 POINTS_PER_WAVE = 12
-"""Of the highest order of a deviation of the flank."""
+"""Points for the highest order of a deviation of the flank."""
 GAUSS = np.polynomial.legendre.leggauss(4)
-"""Places over (−1, 1) and weights between heights at which a lead changes its law: a lead is a square there, second moments of
-the section have its fourth power, and z² comes to it."""
+"""Places over (−1, 1) and weights: a lead is a square, whose fourth power, times z², second moments have."""
 BALANCED = 1e-9
 """Part of the unbalance of all discs, taken one by one, below which their sum is round-off."""
 DISCS, WHEEL_PINS, SHAFT_PINS, ROLLERS, CRANKS, RING, POSTS = (
@@ -56,9 +49,9 @@ def circle_section(radius: float, centre: complex = 0j) -> ComplexArray:
 
 
 def section_within(points: ComplexArray, steps: ComplexArray) -> ComplexArray:
-    """Return ∫dA, ∫z dA, ∫|z|² dA and ∫z² dA inside a closed curve, z = x + iy, mm² to mm⁴, from points and tangents times steps.
+    """Return ∫dA, ∫z dA, ∫|z|² dA and ∫z² dA inside a closed curve, z = x + iy, mm² to mm⁴, by points and tangential steps.
 
-    Sections side by side add up, one that is cut out is subtracted.
+    Of f homogeneous of degree k, ∫f dA = ∮ f (x dy − y dx)/(k + 2), by the trapezoidal rule.
     """
     swept = (points.conjugate() * steps).imag
     powers = np.stack((np.ones_like(points), points, np.abs(points) ** 2, points**2))
@@ -74,21 +67,17 @@ def moved_section(section: ComplexArray, by: complex) -> ComplexArray:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solid:
-    """A part of one material: `material` is its path in a drive file, `density` in kg/m³ not a number where none is given.
-
-    Integrals over z are sums over `heights`, mm, by `weights`, mm, of `sections` (`section_within`), shapes (n,), (n,), (n, 4).
-    `disc` and `crank` tell to which it belongs, −1 to none.
-    """
+    """A part of one material; integrals over z are sums over heights by weights."""
 
     name: str
     group: str
-    material: str
-    density: float
-    heights: FloatArray
-    weights: FloatArray
-    sections: ComplexArray
-    disc: int
-    crank: int
+    material: str  # its path in a drive file
+    density: float  # kg/m³, NaN where none is given
+    heights: FloatArray  # mm
+    weights: FloatArray  # mm
+    sections: ComplexArray  # as `section_within`, shape (heights, 4)
+    disc: int  # to which it belongs, −1 to none
+    crank: int  # likewise
 
     @property
     def volume(self) -> float:
@@ -139,15 +128,11 @@ class Solid:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unbalance:
-    """Mass times eccentricity of each disc, its rollers and eccentrics, along and ahead of the crank, t·mm.
+    """Mass times eccentricity of each disc with its rollers and eccentrics; NaN without densities of discs and rollers."""
 
-    Not a number where the density of discs or rollers is not known; `eccentrics` tells whether that of eccentrics is. `planes`
-    are axial places, mm.
-    """
-
-    discs: ComplexArray
-    planes: FloatArray
-    eccentrics: bool
+    discs: ComplexArray  # along and ahead of the crank, t·mm
+    planes: FloatArray  # axial places, mm
+    eccentrics: bool  # whether their density is known
 
     @property
     def static(self) -> complex:
@@ -176,19 +161,19 @@ class DriveMasses:
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Which parts there are."""
+        """Names of the groups of parts."""
         return tuple(dict.fromkeys(solid.group for solid in self.solids))
 
     @property
     def without_density(self) -> tuple[str, ...]:
-        """Fields of the densities that the drive does not give, those of cranks only where they are not given otherwise."""
+        """Fields of missing densities, those of cranks only where mass or inertia is not given otherwise."""
         given = self.drive.inertia
         known = given is not None and given.crank is not None and given.crank_mass is not None
         missing = [s for s in self.solids if isnan(s.density) and not (known and s.group == CRANKS)]
         return tuple(dict.fromkeys(f"{solid.material}.density" for solid in missing))
 
     def mass_of(self, group: str) -> float:
-        """Return the mass of all parts of a group, t; not a number without a density. Of cranks the given one counts."""
+        """Return the mass of all parts of a group, t, NaN without a density; of cranks the given one counts."""
         given = self.drive.inertia
         if group == CRANKS and given is not None and given.crank_mass is not None:
             return self.drive.crank.number * TONNE_PER_KG * given.crank_mass
@@ -223,10 +208,7 @@ class DriveMasses:
 
 
 def drive_masses(drive: Drive) -> DriveMasses:
-    """Return the masses of the parts of a drive, warm or not, as its file describes them.
-
-    Flanges of a carrier, a housing and cages have no mass: a file gives neither radius nor shape of these.
-    """
+    """Return the masses of the parts whose shapes a drive's file gives, not of flanges, housings and cages."""
     drive = replace(drive, temperature=None)
     discs = [(single, Placement.of_drive(single)) for single in single_discs(drive)]
     solids = (*_discs(discs), *_pins(drive), *_rollers(discs), *_cranks(drive, discs))
@@ -291,10 +273,7 @@ def _discs(discs: Sequence[Single]) -> Iterator[Solid]:
         cut = sum(circle_section(radius, centre) for radius, centre in zip(radii, centres, strict=True))
         (plane,), stands = disc.disc_planes, complex(place.races(np.zeros(1)).middle[0])
         half, relief = 0.5 * disc.thickness, disc.lead_relief_length
-        ends, shorts = (
-            [-half, half],
-            np.zeros(1),
-        )  # of a flank that is straight along its width one section is that of all
+        ends, shorts = [-half, half], np.zeros(1)  # one section where the flank is straight along its width
         if has_lead(disc):
             ends = sorted({*ends, relief - half, half - relief} if 0.0 < relief < half else ends)
             shorts = lead_relief(disc, _gauss(ends)[0])
@@ -366,10 +345,7 @@ def _rollers(discs: Sequence[Single]) -> Iterator[Solid]:
 
 
 def _cranks(drive: Drive, discs: Sequence[Single]) -> Iterator[Solid]:
-    """Eccentrics as wide as the rollers, and the shaft between its bearings beside them; both solid.
-
-    They are of the material of the crankshaft, or of that of the inner races where it has no density.
-    """
+    """Solid eccentrics as wide as the rollers and shafts beside them, of the inner races' material without one of their own."""
     support, taken = drive.crank.support, list[tuple[float, float]]()
     material = f"materials.{'inner_race' if drive.materials.crankshaft.density is None else 'crankshaft'}"
     for disc, (single, place) in enumerate(discs):
@@ -387,7 +363,7 @@ def _cranks(drive: Drive, discs: Sequence[Single]) -> Iterator[Solid]:
 
 
 def _beside(whole: tuple[float, float], taken: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """What is left of a length beside some pieces of it, in ascending order."""
+    """Remaining pieces of a length, in ascending order."""
     firsts, lasts = zip(*taken, strict=True)
     low = np.maximum.accumulate([whole[0], *lasts])
     high = np.minimum([*firsts, whole[1]], whole[1])

@@ -1,11 +1,4 @@
-r"""Coordinates of parts that yield and have no mass: they follow all others as springs do (``docs/theory/motion.md``).
-
-Such coordinates :math:`x = \dots + N z` stand wherever their forces balance, :math:`f = N^T (\partial U/\partial x + R - Q) = 0`,
-and move with the others so that f stays zero, :math:`\dot z = -(N^T K N)^{-1} \dot f|_z`. What is stored is then the least energy
-over z: the balance of energy needs nothing besides, but where they rub, or forces from outside press them, the work on
-:math:`\dot z`. There the change of f is differenced along the motion, since it has the turning of the normals in it; elsewhere
-nothing feels the rates, and :math:`N^T K \dot x` of the stiffness K serves.
-"""
+"""Coordinates of parts that yield and have no mass: they follow all others as springs do (``docs/theory/motion.md``)."""
 
 from __future__ import annotations
 
@@ -22,7 +15,7 @@ from ltca.errors import ConvergenceError
 SETTLED = 1e-8
 """Last step, mm, to first order of which forces are corrected: 1e-5 of approaches, whose square is left."""
 ONWARD = 1e-7
-"""Motion by which the change of forces is differenced, mm or rad: 1e-4 of approaches, and 1e4 times the round-off of forces."""
+"""Motion by which the change of forces is differenced, mm or rad: 1e-4 of approaches, 1e4 times the round-off of forces."""
 STEPS, HALVINGS = 60, 12
 """Steps tried, and how often one is halved that leaves more than there was."""
 
@@ -31,11 +24,7 @@ Respond = Callable[[FloatArray, FloatArray], tuple[Instant, FloatArray]]
 
 
 class MasslessParts:
-    """Parts without mass, followed in time: N as columns, shape (n, k), mm and rad by mm, and where they begin, mm, shape (k,).
-
-    `rubs` tells whether friction or forces from outside act on them; `warm_start` has places, slopes, coordinates of the others
-    and rates of the last call, from which the next one starts.
-    """
+    """Parts without mass: columns N, shape (n, k), and first places, mm; `rubs` tells whether forces feel their rates."""
 
     def __init__(self, columns: FloatArray, place: FloatArray, rubs: bool) -> None:
         self.columns, self.rubs = columns, rubs
@@ -44,10 +33,7 @@ class MasslessParts:
     def settle(
         self, others: FloatArray, rate: FloatArray, respond: Respond
     ) -> tuple[FloatArray, FloatArray, Instant, FloatArray]:
-        """Return coordinates and rates of all, each of shape (n,), the forces there, and ∂z/∂x, shape (k, n).
-
-        `others` and `rate` are coordinates and rates without these parts. ConvergenceError where they find no balance.
-        """
+        """Return coordinates and rates of all, shape (n,), the forces there, and ∂z/∂x, shape (k, n)."""
         columns = self.columns
         place, slope, before_others, before_rates = self.warm_start
         if before_others is not None:

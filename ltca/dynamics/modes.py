@@ -1,9 +1,4 @@
-r"""Eigenfrequencies and modes of stiffness and mass matrices, and what moves in them.
-
-Solved is :math:`M x = \mu (K + s M) x` with :math:`\omega^2 = 1/\mu - s`: parts without mass yield as springs do, and a shift s
-makes the matrix on the right positive where the drive turns freely. Where nothing is given of the input its rotation is held,
-and the coordinates are those that leave it still.
-"""
+"""Eigenfrequencies and modes of stiffness and mass matrices, and the bodies that move in them."""
 
 from __future__ import annotations
 
@@ -23,7 +18,7 @@ MASSLESS = 1e-10
 FIRST_SHIFT, SHIFT_STEP, SHIFTS = 1e-8, 10.0, 12
 """First shift by the mean square frequency (traces of K and M), its growth, and how many are tried."""
 TOLD = 0.05
-"""Part of the kinetic energy from which a body is told of."""
+"""Part of the kinetic energy from which a body is named."""
 MOST_TOLD = 3
 ALIKE = 0.5
 """Cosine of the motions of two discs from which they move together, or against each other."""
@@ -33,13 +28,10 @@ ALONG = 0.8
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
-    """Modes at one position: ω² ascending, 1/s², and coordinates of each as a column, mm and rad, mass-normalised (t·mm²).
+    """Modes at one position; where a drive turns freely the first is its turning, whose square is about 0 of either sign."""
 
-    Where a drive turns freely the first is the turning of the whole drive, no vibration; its square is about 0 of either sign.
-    """
-
-    square: FloatArray
-    shapes: FloatArray
+    square: FloatArray  # ω², ascending, 1/s²
+    shapes: FloatArray  # coordinates as columns, mm and rad, mass-normalised (t·mm²)
     turns_freely: bool
 
     @property
@@ -52,10 +44,7 @@ class Modes:
 
 
 def free_coordinates(row: FloatArray, lever: FloatArray) -> FloatArray:
-    """Return columns that span all motions under which a row is zero, shape (n, n − 1); all for a zero row.
-
-    They are displacements by `lever`, the lengths by which coordinates are, mm, shape (n,).
-    """
+    """Return columns that span the motions under which a row is zero, as displacements by `lever`, mm, shape (n, n − 1 or n)."""
     if not np.any(row):
         return np.diag(1.0 / lever)
     basis = np.linalg.svd((row / lever)[None])[2]
@@ -63,10 +52,7 @@ def free_coordinates(row: FloatArray, lever: FloatArray) -> FloatArray:
 
 
 def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigid: FloatArray | None) -> Modes:
-    """Return the modes of a drive at one position; ConvergenceError where it is not stable.
-
-    `basis` spans the motions that are free, shape (n, m); `rigid` is the turning of the whole drive where it is free, shape (n,).
-    """
+    """Return the modes of a drive at one position, over a basis of free motions; ConvergenceError where it is not stable."""
     k, m = basis.T @ stiffness @ basis, basis.T @ mass @ basis
     own = np.sqrt(np.maximum(np.diag(m), 0.0))
     own[own == 0.0] = 1.0
@@ -96,7 +82,7 @@ def solve_modes(stiffness: FloatArray, mass: FloatArray, basis: FloatArray, rigi
 
 
 def energy_shares(bodies: Sequence[Body], shape: FloatArray) -> dict[str, float]:
-    """Return the part of the kinetic energy of a mode by what moves and how, largest first."""
+    """Return shares of the kinetic energy of a mode by body and kind of motion, largest first."""
     found: dict[str, float] = {}
     for body in bodies:
         name = "discs" if body.name.startswith("disc") else body.name
@@ -107,9 +93,7 @@ def energy_shares(bodies: Sequence[Body], shape: FloatArray) -> dict[str, float]
 
 
 def mode_words(motion: Motion, bodies: Sequence[Body], shape: FloatArray, eccentric: ComplexArray) -> str:
-    """Return what moves in a mode, in words, with its part of the kinetic energy; `eccentric` are the directions of the
-    eccentricities of all discs.
-    """
+    """Return the moving bodies of a mode in words, with shares of the kinetic energy; `eccentric` has directions by disc."""
     told = []
     for name, share in list(energy_shares(bodies, shape).items())[:MOST_TOLD]:
         if share >= TOLD:

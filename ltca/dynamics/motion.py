@@ -1,16 +1,6 @@
 r"""Motion of a drive in time: Lagrange's equations on the contacts' own laws (``docs/theory/motion.md``).
 
-Coordinates are :math:`x = B y + g\,s(t)`: s the angle of the input, g the rigid motion of all parts by it, and y what departs
-from that. Where the input turns as it is told, B spans the motions that leave it still; where a torque drives it, B spans all.
-
-.. math:: B^T (M\ddot x + h(x, \dot x) + \partial U/\partial x + R + C\dot x - Q) = 0
-
-with inertia forces h, friction R, and torques Q at both ends with forces from outside. With the modes Φ under the stiffness K of
-the contacts that are closed, their frequencies ω and the damping ratio ζ,
-
-.. math:: C = K\Phi\,\mathrm{diag}(2\zeta/\omega^3)\,\Phi^T K .
-
-Beside y and its rate the state has the works of input, output, damping and friction, N·mm.
+Coordinates are :math:`x = B y + g\,s(t)`; beside y and its rate the state has the works of `WORKS`, N·mm.
 """
 
 from __future__ import annotations
@@ -34,44 +24,37 @@ WORKS = ("input", "output", "damping", "friction")
 SOFTEST = 1e-3
 """Frequency by the highest one below which a motion counts as free, and is not damped."""
 REST_STEPS, REST_SETTLED, REST_HALVINGS = 200, 1e-10, 8
-"""Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved that leaves more."""
+"""Steps to a balanced state, the last one by the largest coordinate, mm, and how often one is halved."""
 REST_PLAIN, REST_ASIDE = 12, 1e-7
-"""Steps by the stiffness alone, which leaves friction out, and places aside by which it is differenced after them, mm."""
+"""Steps by the stiffness alone, without friction, and places aside by which it is differenced after them, mm."""
 
 Profile = Callable[[float], tuple[float, float, float]]
 """Angle, speed and acceleration of the input at a time."""
 
 
 class Moment(NamedTuple):
-    """What the equation of motion gives for a state: its rate, the torque at the input, ccw positive, N·mm, the forces, and the
-    coordinates of all parts and their rates.
-    """
+    """The equation of motion at a state."""
 
     state_rate: FloatArray
-    input_torque: float
+    input_torque: float  # ccw positive, N·mm
     forces: Instant
-    place: FloatArray
-    rate: FloatArray
+    place: FloatArray  # coordinates of all parts, mm and rad
+    rate: FloatArray  # and their rates
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Equation:
-    """Equation of motion of a drive over n coordinates.
-
-    `basis` is B, mm and rad by mm, shape (n, m), `lead` is g, by rad of the input, shape (n,); the turns of both ends are rows.
-    `input_motion` tells s and its rates at a time, rad, `output_torque` the torque on the output; torques are ccw positive, N·mm,
-    that at the input None where it turns as told. B leaves out the motions of parts without mass.
-    """
+    """Equation of motion of a drive over n coordinates; torques are ccw positive, N·mm."""
 
     kinetic: KineticEnergy
     contacts: ContactForces
-    basis: FloatArray
-    lead: FloatArray
-    input_turns: FloatArray
+    basis: FloatArray  # B, of parts with mass, mm and rad by mm, shape (n, m)
+    lead: FloatArray  # g, by rad of the input, shape (n,)
+    input_turns: FloatArray  # rotation of the input, a row
     output_turns: FloatArray
     input_motion: Profile
     output_torque: Callable[[float], float]
-    input_torque: float | None
+    input_torque: float | None  # None where the input turns by `input_motion`
     damping_ratio: float
     massless: MasslessParts | None = None
 
@@ -103,7 +86,7 @@ class Equation:
         return now, now.force + now.friction - loaded
 
     def _moment(self, time: float, state: FloatArray) -> tuple[FloatArray, FloatArray, Instant, FloatArray]:
-        """x, its rate, the forces, and B with what follows its motions."""
+        """x, its rate, the forces, and B with the parts without mass that follow its motions."""
         m, (angle, speed, _) = self.freedoms, self.input_motion(time)
         x, rate = self.basis @ state[:m] + self.lead * angle, self.basis @ state[m : 2 * m] + self.lead * speed
         if self.massless is None:
@@ -116,7 +99,7 @@ class Equation:
         return self.solved(time, state).state_rate
 
     def solved(self, time: float, state: FloatArray) -> Moment:
-        """Return the rate of a state, and what goes with it."""
+        """Return the rate of a state, with torque, forces and coordinates."""
         m, basis = self.freedoms, self.basis
         x, rate, now, followed = self._moment(time, state)
         mass, inertia = self.kinetic.at(x, rate)
@@ -136,7 +119,7 @@ class Equation:
         return Moment(np.concatenate((state[m : 2 * m], faster, works)), torque, now, x, rate)
 
     def _damping(self, stiffness: FloatArray, mass: FloatArray, basis: FloatArray) -> FloatArray:
-        """C at the state of the moment, shape (n, n), of motions that parts without mass follow."""
+        """C = K Φ diag(2ζ/ω³) Φᵀ K at the state of the moment, shape (n, n), of motions that parts without mass follow."""
         pressed = stiffness @ basis
         square, shapes = _checked(dsygv(basis.T @ pressed, mass))[:2]
         felt = square > SOFTEST**2 * square[-1]
@@ -144,7 +127,7 @@ class Equation:
         return np.asarray((on_modes * (2.0 * self.damping_ratio / square[felt] ** 1.5)) @ on_modes.T)
 
     def _left_over(self, time: float, y: FloatArray) -> tuple[Instant, FloatArray]:
-        """The same in a state of `at_rest`."""
+        """Forces and their sum in a state of `at_rest`."""
         angle, speed, _ = self.input_motion(time)
         return self._pushed(time, self.whole @ y + self.lead * angle, self.lead * speed)
 
@@ -153,11 +136,7 @@ class Equation:
         return float(self.lead @ self._left_over(time, y)[1])
 
     def at_rest(self, time: float, start: FloatArray) -> FloatArray:
-        """Return y of balance under the torques of a time, the input held, and the places of parts without mass, shape (m + k,).
-
-        Friction is that of the slips which the rigid motion has at the speed of the input, none where the input stands.
-        ConvergenceError where no balance is found.
-        """
+        """Return y of balance, the input held, friction at its speed, and places of parts without mass, shape (m + k,)."""
         y, whole, history = start, self.whole, list[float]()
         step: FloatArray = np.zeros(y.size)
         before, halved = np.inf, 0
@@ -185,7 +164,7 @@ class Equation:
 
 
 def _checked(found: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Return what LAPACK answers; ConvergenceError where it fails, as for a motion that is not a number."""
+    """Return an answer of LAPACK; ConvergenceError where it failed, as for a motion that is not a number."""
     if found[-1] != 0:
         raise ConvergenceError("the motion has become no number: its masses or forces are not finite", [])
     return found

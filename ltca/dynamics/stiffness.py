@@ -1,10 +1,4 @@
-r"""Stiffness of a drive about balanced positions, over the coordinates of its motion, without friction.
-
-Beside the tangent of the pose stand the derivatives by the crank angle, with which discs and wheel go along as they nominally do:
-those of the forces on the members, and of the force on that motion, differenced beside the balanced position. The tangent of the
-pose is the whole one (`ltca.mechanics.full_tangent`), made symmetric: contacts whose radii of curvature and influence
-coefficients follow the pose have no potential, and what is not symmetric of it, 1e-5 to 3e-4, alters frequencies by the square.
-"""
+"""Stiffness of a drive about balanced positions, over the coordinates of its motion, without friction."""
 
 from __future__ import annotations
 
@@ -20,13 +14,11 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
 
 STEP = 1e-5
-"""Step of the crank angle, rad: contacts move by some nanometres then, and round-off of the forces is 1e-6 of their change."""
+"""Step of the crank angle, rad: contacts move by nanometres, round-off of the forces is 1e-6 of their change."""
 
 
 def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> FloatArray:
-    """Return the stiffness at positions that a model without friction balanced, N/mm, N and N·mm by coordinates in mm and rad,
-    shape (positions, n, n).
-    """
+    """Return the stiffness at positions that a model without friction balanced, N/mm, N and N·mm, shape (positions, n, n)."""
     angle, pose, start = found.crank_angle, found.pose, Start.after(found.response)
     contacts = replace(model, supports=None, stage=None, friction=None, external=None)
     tangent = contacts.whole_tangent(angle, pose, start, np.broadcast_to(lever_arms(model), pose.shape))
@@ -53,9 +45,7 @@ def stiffness_matrices(model: Reducer, motion: Motion, found: Equilibrium) -> Fl
 
 
 def crank_force(model: Reducer, crank_angle: FloatArray, pose: FloatArray, response: Response) -> FloatArray:
-    """∂U/∂φ_C at a held pose, with which discs and wheel go along, N·mm: the moments that hold the cranks, and the work of the
-    forces on discs and wheel on their nominal motion.
-    """
+    """∂U/∂φ_C at a held pose, N·mm: moments of the cranks, and work of the forces on the nominal motion of discs and wheel."""
     moment = model.crank_moments(crank_angle, pose, response.parts).sum(axis=1)
     for number, disc in enumerate(model.discs):
         own, velocity = model.coordinates.columns(number), disc.geometry.placement.races(crank_angle).velocity

@@ -1,17 +1,9 @@
-r"""Teeth of a first stage in motion: what the sun presses on the planets, and what yields there (``docs/theory/motion.md``).
+r"""Teeth of a first stage in motion: forces of the sun on the planets, and their yielding (``docs/theory/motion.md``).
 
-The cranks turn together, and lag behind the sun by what each planet yields in the mean of all. With the moments :math:`T_c` that
-hold the cranks, the displacement and slope :math:`u_c` of each at its planet but what its own tooth force bends it, and the
-direction :math:`p_c` of the force by the moment,
+With half the free angle h, and the direction p of forces by moments and the displacement u of each crank at its planet,
 
-.. math:: e_\pm = \varphi_C - \varphi_{sun} + \overline{p_c \cdot u_c}, \qquad
-   \textstyle\sum T_c = -\frac{1}{\bar k}\left[\min(e_+ + h, 0) + \max(e_- - h, 0)\right] ,
-
-k̄ being the compliance of all teeth and shafts together and h half of the free angle: one spring on either flank, with the
-radial force of that flank in :math:`p_c`. Each planet carries an even share of :math:`\sum T_c` and what the contacts of its own
-crank depart from their mean by. The even shares come of the energy :math:`\tfrac12 \bar k (\sum T_c)^2`; the work of the uneven
-ones on their own displacements would turn single cranks, which the contacts do not feel, and is booked by itself, with that of
-the sun on the wheel.
+.. math:: e_\pm = \varphi_C - \varphi_{sun} + \overline{p \cdot u}, \qquad
+   \textstyle\sum T = -\frac{1}{\bar k}\left[\min(e_+ + h, 0) + \max(e_- - h, 0)\right] .
 """
 
 from __future__ import annotations
@@ -26,24 +18,19 @@ from ltca.dynamics.kinetics import Motion
 from ltca.equilibrium.reducer import Reducer
 
 SETTLED = 1e-12
-"""Change of the moment of all cranks by itself, or by 1 N·mm, at which bearings and teeth agree."""
+"""Change of the moment of all cranks, relative or by 1 N·mm, at which bearings and teeth agree."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TeethForces:
-    """Teeth of a first stage at one instant: ∂U/∂x, N and N·mm, the stiffness of the flank that carries, what is stored, N·mm.
+    """Teeth of a first stage at one instant."""
 
-    `carried` is what the bearings of cranks carry of it while the planes of the discs stand still, N, shape (1, cranks, 2), None
-    where these are springs alone; `uneven` are the forces whose work is booked by itself, uneven moments and the sun on the
-    wheel, and `moved` what they work on, the lag of each crank and the wheel.
-    """
-
-    force: FloatArray
-    stiffness: FloatArray
-    carried: ComplexArray | None
-    energy: float
-    uneven: FloatArray
-    moved: FloatArray
+    force: FloatArray  # ∂U/∂x, N and N·mm
+    stiffness: FloatArray  # of the flank that carries
+    carried: ComplexArray | None  # on bearings of cranks, discs standing still, N, (1, cranks, 2)
+    energy: float  # N·mm
+    uneven: FloatArray  # forces whose work is booked by itself
+    moved: FloatArray  # lag of each crank, and the wheel
 
     def work_to(self, other: TeethForces) -> float:
         """Return the work of the uneven forces on the way to another instant nearby, by a trapezoid, N·mm."""

@@ -1,10 +1,4 @@
-r"""Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89).
-
-The pose q minimises Π(q) = Σ U_i(δ_i(q)) − T_load · wheel_angle. Its gradient is the residual, its Hessian the
-tangent; `ltca.equilibrium.newton` goes downhill. Under a light load a disc that starts with play wanders between
-contacts that take turns. Such positions are solved under a heavier torque, which leaves no play, and followed from there
-down to their own.
-"""
+"""Equilibrium of the floating discs at held crank angles (Eq. 43–44, 70–72, 85–89; ``docs/theory/balance.md``)."""
 
 from __future__ import annotations
 
@@ -29,7 +23,7 @@ from ltca.geometry.play import loose_poses
 MAX_ITERATIONS = 100
 """Newton iterations after which a start is given up; ten are usual, and fifty where contacts alternate."""
 LOOSE_ITERATIONS = 40
-"""The same of wheel and cranks that float in their bearings: from where they stop without load a few are enough."""
+"""The same where wheel and cranks float in their bearings: from their stops a few are enough."""
 TORQUE_RATIO = 8.0
 """Ratio of successive torques of the continuation; reduced where a step fails, down to `LEAST_TORQUE_RATIO`."""
 MAX_TORQUE_STEPS = 7
@@ -43,34 +37,18 @@ FEW_ITERATIONS = 3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Equilibrium:
-    """Balanced positions.
+    """Balanced positions."""
 
-    Attributes
-    ----------
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    wheel_moment : array, shape (positions,)
-        External moment on the wheel, N·mm.
-    pose : array, shape (positions, coordinates)
-        q of `ltca.geometry.coordinates`.
-    response : Response
-        Contacts at that pose.
-    residual : array, shape (positions,)
-        Largest unbalanced force, moments divided by their lever arms (disc e z_C, wheel e z_P), N.
-    iterations : array of int, shape (positions,)
-        Newton iterations.
-    """
-
-    crank_angle: FloatArray
-    wheel_moment: FloatArray
-    pose: FloatArray
+    crank_angle: FloatArray  # φ_C, rad, shape (positions,)
+    wheel_moment: FloatArray  # external, N·mm, shape (positions,)
+    pose: FloatArray  # q of `ltca.geometry.coordinates`, shape (positions, coordinates)
     response: Response
-    residual: FloatArray
-    iterations: NDArray[np.intp]
+    residual: FloatArray  # largest unbalanced force, N, moments divided by `lever_arms`, shape (positions,)
+    iterations: NDArray[np.intp]  # Newton's, shape (positions,)
 
 
 def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equilibrium:
-    """Return what one of several discs has of balanced positions: its pose and contacts, the moment that it carries."""
+    """Return the pose, the contacts and the moment of one of several discs."""
     part = found.response.parts[disc]
     return replace(
         found,
@@ -81,13 +59,8 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
 
 
 def lever_arms(model: Reducer) -> FloatArray:
-    """Return the lengths that turn the residual into forces, mm: e z_C for the rotation of each disc, e z_P, e for
-    twists of cranks, half the thickness for leans, 1 elsewhere.
-
-    Returns
-    -------
-    array, shape (coordinates,) or (positions, coordinates)
-        One row for all positions where they are of one drive.
+    """Lever arms of the residual, mm: e z_C of discs, e z_P of the wheel, e of twists, half widths of leans, 1 of
+    displacements.
     """
     coordinates, geometries = model.coordinates, model.geometries
     eccentricities = [geometry.placement.mean_eccentricity[..., 0] for geometry in geometries]
@@ -123,37 +96,11 @@ def solve_equilibrium(
     reference: FloatArray | float = 0.0,
     holding: Holding | None = None,
 ) -> Equilibrium:
-    """Find the pose in which every position of a batch balances.
+    """Find the pose in which every position of a batch balances; ConvergenceError where one does not.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose.
-    crank_angle : array, shape (positions,)
-        Held crank angles φ_C, rad.
-    wheel_moment : float or array, shape (positions,)
-        External moment on the wheel, ccw positive, N·mm.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from; by default the discs on the inner-race centres and the wheel turned to first contact.
-    inner : Start, optional
-        Inner unknowns near the poses to start from.
-    series : int
-        Number of series of equally many positions, one after the other: turns of different drives or under different torques.
-    reference : float or array, shape (positions,)
-        Moment that the residual is measured by where the one on the wheel is smaller, N·mm: parts that hold each other carry
-        loads without any.
-    holding : Holding, optional
-        Which moments on the wheel to balance instead, by what contacts have come to; `wheel_moment` is where they start.
-
-    Returns
-    -------
-    Equilibrium
-        Poses, loads, residuals.
-
-    Raises
-    ------
-    ConvergenceError
-        When a position does not balance; the history holds its residuals in N.
+    `start` has poses to start from, by default first contact, and `inner` the inner unknowns near them. Positions are those of
+    `series` drives or torques, equally many of each. Residuals are measured by the moment on the wheel or, where that is
+    smaller, `reference`, N·mm; `holding` adjusts the moments to the contacts.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     moment = np.broadcast_to(np.asarray(wheel_moment, dtype=float), angle.shape)
@@ -167,12 +114,9 @@ def solve_equilibrium(
 
 
 def follow_equilibrium(
-    model: Reducer,
-    found: Equilibrium,
-    wheel_moment: FloatArray,
-    reference: FloatArray | float = 0.0,
+    model: Reducer, found: Equilibrium, wheel_moment: FloatArray, reference: FloatArray | float = 0.0
 ) -> Equilibrium:
-    """Balance positions under other moments, N·mm, from what this model answered; `reference` as for `solve_equilibrium`."""
+    """Balance positions under other moments, N·mm, from known contacts; `reference` as for `solve_equilibrium`."""
     search = _search(model, found.crank_angle, wheel_moment, found.pose.copy(), reference)
     return _completed(search, search.iterate(_most(search), response=found.response))
 
@@ -186,7 +130,7 @@ def _search(
 
 
 def _completed(search: Search, left: NDArray[np.intp]) -> Equilibrium:
-    """Balance what Newton's method has left over by other means, and return all positions."""
+    """Balance by other means what Newton's method did not, and return all positions."""
     model, angle = search.model, search.angle
     creeping = search.follow_valley if search.symmetric else search.reduce_residual
     if left.size and _is_loose(model):
@@ -209,19 +153,9 @@ def _completed(search: Search, left: NDArray[np.intp]) -> Equilibrium:
 def _stages(
     search: Search, start: FloatArray | None, inner: Start | None, series: int
 ) -> Iterator[tuple[NDArray[np.intp], Start | None]]:
-    """Yield positions to balance together, with inner unknowns to begin from: leading ones, then the others from these.
-
-    Without starts one position of each series leads, from first contact: what disc and wheel do from there on is that of all,
-    seen from the crank.
-    """
-    model, angle, moment, pose, count = (
-        search.model,
-        search.angle,
-        search.moment,
-        search.pose,
-        search.angle.size // series,
-    )
-    everything = np.arange(angle.size)
+    """Yield positions to balance together, with inner unknowns to begin from: leading ones, then the others from these."""
+    model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
+    everything, count = np.arange(angle.size), angle.size // series
     leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count])
     if start is not None:
         pose[:] = start
@@ -241,6 +175,7 @@ def _stages(
         if rest.size:
             yield rest, take_positions(inner, rest) if near else _place(search, rest)
         return
+    # One position of each series leads: seen from the crank, disc and wheel do the same in all others.
     leaders = leading[0] + count * np.arange(series) if have_neighbours(moment[:count]) else everything
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], moment[leaders])
     yield leaders, None
@@ -264,9 +199,7 @@ def _stages(
 
 
 def _place(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp] | None = None) -> Start:
-    """Place positions between those that balance, or as their leaders stand, numbered among these; return the inner unknowns to
-    begin from.
-    """
+    """Place positions between balanced ones, or as their leaders stand, numbered among these; return inner unknowns."""
     model, wanted = search.model, search.angle[rows]
     known, contacts = search.contacts()
     angle = search.angle[known]
@@ -297,7 +230,7 @@ def _part(search: Search, rows: NDArray[np.intp], factor: FloatArray, pose: Floa
 
 
 def _is_costly(model: Reducer) -> bool:
-    """Whether evaluations of a few positions take longer than what they save of many."""
+    """Whether evaluations of a few positions take longer than neighbours save of many."""
     several = len(model.discs) * model.discs[0].geometry.placement.cranks > 1
     coupled = any(disc.coefficients is not None for disc in model.discs)
     return several or coupled or model.pins is not None or bool(model.coordinates.leans) or not model.symmetric
@@ -314,10 +247,7 @@ def _most(search: Search) -> int:
 
 
 def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Solve positions from where the wheel stops without load, all that floats in its bearings taken along; return the others.
-
-    Under light loads wheel and cranks that are free within their clearances have a long way to go.
-    """
+    """Solve positions from where the wheel stops without load, with all that floats in its bearings; return the others."""
     sense = np.where(search.moment[rows] < 0.0, -1.0, 1.0)
     try:
         pose = loose_poses(search.model.take(rows).geometries, search.angle[rows], sense)
@@ -332,7 +262,7 @@ def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def _take_over(search: Search, rows: NDArray[np.intp], part: Search, wanted: NDArray[np.bool_]) -> None:
-    """Take over those positions that the search for some of them has balanced and that are wanted."""
+    """Take over the wanted positions that the search for some of them has balanced."""
     kept, contacts = part.contacts()
     own = wanted[kept]
     there = rows[kept[own]]
@@ -342,7 +272,7 @@ def _take_over(search: Search, rows: NDArray[np.intp], part: Search, wanted: NDA
 
 
 def _follow_down(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Solve positions from heavier torques down to their own; return those that have no balance there either."""
+    """Solve positions from heavier torques, which leave no play, down to their own; return those that have no balance there."""
     pose = _at_first_contact(search.model.take(rows), search.angle[rows], search.moment[rows])
     level = np.full(rows.size, np.nan)
     for power in range(1, MAX_TORQUE_STEPS + 1):
@@ -377,7 +307,7 @@ def _below_round_off(search: Search, rows: NDArray[np.intp]) -> NDArray[np.bool_
 
 
 def _failure(search: Search, rows: NDArray[np.intp]) -> ConvergenceError:
-    """What to say of positions that do not balance."""
+    """The error that names the worst of the positions that do not balance."""
     residual, count = search.history[-1], search.angle.size
     slipped = rows[search.slipped[rows]]
     worst = int(slipped[0] if slipped.size else rows[np.argmax((residual / search.load)[rows])])

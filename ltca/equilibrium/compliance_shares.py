@@ -1,10 +1,4 @@
-r"""Which parts of the reducer yield how much of what its output yields: shares of the compliance at a balanced position.
-
-A little more torque moves everything by :math:`dq = K^{-1} e\, dT`. The work of that torque, :math:`dT\, d\psi`, is what
-contacts and what holds their pins take, :math:`\sum dF_i\, d\delta_i`, and the supports, :math:`dq^T K_S\, dq`; what is left
-is geometry: loads that turn with their contacts. Changes of loads come from two poses beside the balanced one, whatever the
-bodies' compliance is.
-"""
+"""Shares of the parts of the reducer in the compliance of its output, by the work of a little more torque."""
 
 from __future__ import annotations
 
@@ -22,15 +16,11 @@ from ltca.geometry.rotation import unit
 
 PARTS = ("pins", "ring", "crank_bearings", "shaft_pins", "cranks", "wheel_bearing", "carrier", "geometry")
 RELATIVE_TORQUE_STEP = 1e-4
-"""Relative change of the torque: loads follow it linearly, and round-off stays below 1e-4 of their change."""
+"""Relative change of the torque: loads follow linearly, and round-off stays below 1e-4 of their change."""
 
 
 def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -> dict[str, FloatArray]:
-    """Return the shares of the output's compliance by part (`PARTS`), crank held, shape (positions,); they add up to one.
-
-    `behind` is the compliance of what twists between wheel and output and holds no contact, by the moment of the wheel,
-    rad/(N·mm); it is the carrier's. Shares are not a number where nothing resists a free motion.
-    """
+    """Return the shares of `PARTS` in the output's compliance, crank held, shape (positions,); NaN where a motion is free."""
     response, size = found.response, found.pose.shape[1]
     if model.friction is not None:  # what bodies yield, not what rubs
         model = replace(model, friction=None)
@@ -43,7 +33,8 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
     except np.linalg.LinAlgError:  # a disc that carries nothing floats
         return dict.fromkeys(PARTS, np.full(found.pose.shape[0], np.nan))
     start = Start.after(response)
-    ends = [model.respond(found.crank_angle, found.pose + side * moved, start) for side in (0.5, -0.5)]
+    poses = [found.pose + side * moved for side in (0.5, -0.5)]
+    ends = [model.respond(found.crank_angle, pose, start) for pose in poses]
     work = {part: np.zeros(found.pose.shape[0]) for part in PARTS}
     for number, here in enumerate(response.parts):
         own = moved[:, model.coordinates.columns(number)]
@@ -69,7 +60,6 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
                     relative = lean - own[:, place : place + 2]
                 work["crank_bearings"] -= changed.real * relative[:, 0] + changed.imag * relative[:, 1]
     if model.pins is not None and ends[0].ring is not None:
-        poses = [found.pose + side * moved for side in (0.5, -0.5)]
         work["ring"] = _of_ring(model, found.crank_angle, poses, ends)
         work["pins"] -= work["ring"]
     if model.supports is not None:
@@ -88,6 +78,7 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
             if model.discs[0].geometry.tips_by_ring.size:  # what is left are the tips of the shaft pins
                 held = _stored(stiffness, np.where(wheel, 0.0, moved))
                 work["shaft_pins"] += held - work["cranks"] - work["carrier"]
+    # The compliance `behind` the wheel, rad/(N·mm), twists up to the output and holds no contact.
     twisted = behind * one[:, WHEEL_ANGLE, 0] ** 2
     work["carrier"] += twisted
     total = one[:, WHEEL_ANGLE, 0] * moved[:, WHEEL_ANGLE] + twisted
@@ -98,7 +89,7 @@ def compliance_shares(model: Reducer, found: Equilibrium, behind: float = 0.0) -
 def _of_ring(
     model: Reducer, crank_angle: FloatArray, poses: Sequence[FloatArray], ends: Sequence[Response]
 ) -> FloatArray:
-    """Work of changed forces on the ring along what they move it."""
+    """Work of changed forces on the ring along its displacements."""
     turned, forces = model.discs[0].geometry.placement.wheel_rotation(crank_angle), []
     for pose, end in zip(poses, ends, strict=True):
         pins = end.parts[0].pin_load.shape[1]
@@ -109,7 +100,7 @@ def _of_ring(
 
 
 def _against_flanges(model: Reducer, moved: FloatArray) -> FloatArray:
-    """Displacements with those of yielding cranks, and their leans, taken against the straight lines between their bearings."""
+    """Displacements with those and the leans of yielding cranks taken against the straight lines between their bearings."""
     coordinates = model.coordinates
     bent = moved.copy()
     for number, disc in enumerate(model.discs):

@@ -1,8 +1,4 @@
-"""Forces and moments from outside on the output: an arm, a pulley, the weight of what it carries.
-
-With the pin shaft held the output is the wheel. With the wheel held it is the pin shaft, whose frame is that of the analysis: the
-housing turns in it by φ_C/u, and a force on the shaft acts on the wheel, relative to the shaft, the other way.
-"""
+"""Forces and moments from outside on the output: an arm, a pulley, the weight of what it carries."""
 
 from __future__ import annotations
 
@@ -17,14 +13,10 @@ from ltca.geometry.rotation import unit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExternalForce:
-    """Force in the plane of the discs on the wheel, relative to the pin shaft, x + iy, N, and what presses the lean of the wheel,
-    z F − i M of forces at z and moments M = M_x + i M_y, N·mm.
+    """Force in the plane on the wheel against the pin shaft, x + iy, N, and on the lean of the wheel, z F − i M, N·mm."""
 
-    One pair stands still in the frame of the pin shaft, one turns with the wheel by φ_C/u from where it is at φ_C = 0.
-    """
-
-    still: ComplexArray = by_drive(1)
-    turning: ComplexArray = by_drive(1)
+    still: ComplexArray = by_drive(1)  # in the frame of the pin shaft
+    turning: ComplexArray = by_drive(1)  # turns with the wheel by φ_C/u; at φ_C = 0
     reduction_ratio: float
 
     @classmethod
@@ -36,16 +28,17 @@ class ExternalForce:
             sum((_pressing(one) for one in entries_of(drive, frame)), np.zeros(2, dtype=complex))
             for frame in ("housing", "output")
         )
+        # With the wheel held the output is the pin shaft, and its forces act on the wheel, relative to it, the other way.
         still, turning = (-output, -housing) if drive.wheel_is_held else (housing, output)
         return cls(still=still, turning=turning, reduction_ratio=drive.reduction_ratio)
 
     def on_wheel(self, crank_angle: FloatArray) -> ComplexArray:
-        """Return the force at crank angles, in the frame of the pin shaft, N, and what presses the lean, N·mm, (positions, 2)."""
+        """Return the force at crank angles, in the frame of the pin shaft, N, and on the lean, N·mm, shape (positions, 2)."""
         return np.asarray(self.still + self.turning * unit(crank_angle / self.reduction_ratio)[:, None])
 
 
 def _pressing(load: ExternalLoad) -> ComplexArray:
-    """Force in the plane, N, and what presses a lean, N·mm; forces along the axis act on it and press none."""
+    """Force in the plane, N, and on a lean, N·mm; forces along the axis press none."""
     force = complex(load.force.x, load.force.y)
     return np.array([force, load.at.z * force - 1j * complex(load.moment.x, load.moment.y)])
 

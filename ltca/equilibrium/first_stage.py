@@ -1,28 +1,8 @@
-r"""First stage: forces of the sun on the planets of the cranks, and what its teeth add to the angle of the output.
+r"""First stage: forces of the sun on the planets of the cranks, and the angle that its teeth add to the output.
 
-A planet holds its crank with the moment T (`Reducer.crank_moments`). At the pitch point, which lies r_w from the axis
-of the crank towards the sun, the tooth of the sun pushes with
+At the pitch point, r_w from the axis of the crank, the sun pushes (``docs/how-to/several_cranks.md``) with
 
-.. math:: F_t = T/r_w, \quad F_r = |F_t| \tan\alpha_{wt}, \quad F_a = -F_t \tan\beta_w
-
-along the tangent (positive where it turns the planet ccw), away from the sun, and along z of a right-handed planet. Without
-profile shift :math:`\tan\alpha_{wt} = \tan\alpha_n/\cos\beta`. The axial force stands r_w off the axis and bends the crank by the
-couple :math:`F_a r_w`.
-
-Where cranks yield these forces act on the shafts beside those of the discs. In the coordinates of the crank at the discs a
-force elsewhere on the shaft is what holds the planes of the discs still under it. What the bearings of a crank carry of it
-meanwhile acts on what they stand in, the far flange of a carrier, and on the displacement that a clearance or preload leaves
-them (`ltca.equilibrium.supports`). By virtual work the same matrices give displacement and slope of the crank at the planet.
-
-The teeth of the sun stand still while the input is held. Cranks turn together, so the crank lags behind its ideal angle by the
-mean over all cranks of what the mesh yields, :math:`T/c r_b^2`, of what the crank gives way at the planet, and of half the
-backlash, on the side to which the moments turn. The wheel follows by 1/u of that.
-
-Teeth that stand off their axes, those of a planet by :math:`d_c`, which turns with the crank, and those of the sun by
-:math:`d_s`, which turns with the input, mesh along a line of action that they displace: involutes turn the planet by the part
-of :math:`d_c - d_s` along it, over r_b, and by nothing else of first order. Every planet sees the sun from another side. What
-cranks that turn apart by such angles turn the wheel by is their mean weighted by what each takes of a little more torque
-(`ltca.equilibrium.output_angle.shares_of_cranks`).
+.. math:: F_t = T/r_w, \quad F_r = |F_t| \tan\alpha_{wt}, \quad F_a = -F_t \tan\beta_w .
 """
 
 from __future__ import annotations
@@ -42,53 +22,38 @@ from ltca.geometry.rotation import unit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeshForces:
-    """Forces of the sun on the planets, N, shape (positions, cranks): F_t, positive where it turns the planet counter-clockwise,
-    F_r away from the sun, F_a along z, and F_t and F_r in the fixed frame.
-    """
+    """Forces of the sun on the planets, N, shape (positions, cranks)."""
 
-    tangential: FloatArray
-    radial: FloatArray
-    axial: FloatArray
-    in_plane: ComplexArray
+    tangential: FloatArray  # positive where it turns the planet counter-clockwise
+    radial: FloatArray  # away from the sun
+    axial: FloatArray  # along z
+    in_plane: ComplexArray  # the first two in the fixed frame
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageMesh:
-    """Mesh of the sun with the planets of all cranks; lengths are in mm.
+    """Mesh of the sun with the planets of all cranks; lengths are in mm."""
 
-    Pitch radii are those of planets, r_w, and sun; `separating` is tan α_wt and `axial` tan β_w, positive where planets are
-    right-handed. A crank turns by `twist` by its moment while the sun is held, 1/(c r_b²), rad/(N·mm), 0 of rigid teeth, and a
-    planet freely by twice `half_free`, rad. `plane` is the axial place of the planets, `outward` are the directions from the
-    sun to the cranks. Runouts, d_s and d_c, are those at crank angle zero; the sun turns against the carrier by `sun_turns` of a
-    crank, −z₂/z₁. `yields` tells whether cranks yield, or the far flange in which they stand, and `carried` whether the carrier
-    is the output, which the main bearing holds against what the sun presses on its planets.
-
-    Displacement and slope of a crank at the planet follow from the coordinates, without forces there and with its bearings where
-    they stand, by `by_pose`, shape (cranks, 2, coordinates). With the planes of the discs standing still they follow from
-    displacements in the two bearings by `by_bearings`, which also is the part of force and couple at the planet that each bearing
-    then carries (zero where the file says nothing of these), and from a unit force and couple by `own`, mm/N. `on_supports`,
-    shape (supports, 2), is the part of these that each bearing of the crank carries; of rigid cranks one at the planet, behind
-    those beside the discs, carries the force.
-    """
-
-    pitch_radius: BatchScalar = by_drive(0)
-    separating: BatchScalar = by_drive(0)
-    axial: BatchScalar = by_drive(0)
-    twist: BatchScalar = by_drive(0)
-    half_free: BatchScalar = by_drive(0)
-    plane: BatchScalar = by_drive(0)
+    pitch_radius: BatchScalar = by_drive(0)  # r_w of planets
+    separating: BatchScalar = by_drive(0)  # tan α_wt
+    axial: BatchScalar = by_drive(0)  # tan β_w, positive of right-handed planets
+    twist: BatchScalar = by_drive(0)  # angle of a crank by its moment, 1/(c r_b²), rad/(N·mm)
+    half_free: BatchScalar = by_drive(0)  # half of the free angle of a planet, rad
+    plane: BatchScalar = by_drive(0)  # axial place of the planets
     sun_radius: BatchScalar = by_drive(0)
     reduction_ratio: float
-    outward: ComplexArray = by_drive(1)
-    by_pose: ComplexArray = by_drive(3)
-    by_bearings: FloatArray = by_drive(2)
-    own: FloatArray = by_drive(2)
-    on_supports: FloatArray = by_drive(2)
-    yields: bool
-    carried: bool
-    sun_turns: float
-    sun_runout: ComplexArray = by_drive(1)
-    planet_runout: ComplexArray = by_drive(1)
+    outward: ComplexArray = by_drive(1)  # directions from the sun to the cranks
+    by_pose: ComplexArray = by_drive(
+        3
+    )  # displacement and slope at the planet by the pose, shape (cranks, 2, coordinates)
+    by_bearings: FloatArray = by_drive(2)  # the same by displacements in its two bearings, discs standing still
+    own: FloatArray = by_drive(2)  # the same by force and couple there, mm/N
+    on_supports: FloatArray = by_drive(2)  # part of these that each bearing carries, shape (supports, 2)
+    yields: bool  # whether cranks yield, or the far flange in which they stand
+    carried: bool  # whether the carrier is the output
+    sun_turns: float  # turns of the sun against the carrier by turn of a crank, −z₂/z₁
+    sun_runout: ComplexArray = by_drive(1)  # d_s at crank angle zero
+    planet_runout: ComplexArray = by_drive(1)  # d_c at crank angle zero
 
     @classmethod
     def of_drive(cls, drive: Drive) -> StageMesh | None:
@@ -152,10 +117,7 @@ class StageMesh:
         return bool(np.any(self.sun_runout) or np.any(self.planet_runout))
 
     def play(self, crank_angle: FloatArray) -> FloatArray:
-        """Return the free play of the wheel by the backlash of the teeth, both ways, rad, shape (positions,).
-
-        Eccentricities open and close the meshes; the wheel has the mean of them, as where its cranks share the torque evenly.
-        """
+        """Return the free play of the wheel by the backlash of the teeth, in the mean of all meshes, rad, shape (positions,)."""
         free = np.asarray(2.0 * self.half_free / abs(self.reduction_ratio))
         if not self.runs_out:
             return np.broadcast_to(free.reshape(-1) if free.ndim else free, crank_angle.shape)
@@ -169,10 +131,7 @@ class StageMesh:
         return np.asarray(planets - self.sun_runout * unit(self.sun_turns * crank_angle)[:, None])
 
     def lag_by_runout(self, crank_angle: FloatArray, sense: FloatArray) -> FloatArray:
-        """Return the angle by which every crank lags behind the held sun by eccentricities, rad, shape (positions, cranks).
-
-        `sense` is that of the moments that hold the cranks, shape (positions,), by which one flank or the other touches.
-        """
+        """Return the lag of every crank behind the sun by runout, rad, shape (positions, cranks); `sense` chooses the flank."""
         pushed = self._slope(np.broadcast_to(sense[:, None], (sense.size, self.outward.shape[-1])))[..., 0]
         return np.asarray((pushed.conjugate() * self._stands_off(crank_angle)).real)
 
@@ -181,49 +140,34 @@ class StageMesh:
         tangential = moments / self.pitch_radius
         radial = np.abs(tangential) * self.separating
         axial = -tangential * self.axial
-        return MeshForces(
-            tangential=tangential,
-            radial=radial,
-            axial=axial,
-            in_plane=(radial - 1j * tangential) * self.outward,
-        )
+        in_plane = (radial - 1j * tangential) * self.outward
+        return MeshForces(tangential=tangential, radial=radial, axial=axial, in_plane=in_plane)
 
     def on_wheel(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return the force of the sun on all planets as one on the wheel relative to the carrier, N, and what it presses the lean
-        of the wheel with, z F − i M, N·mm, shape (positions, 2), and their derivatives by the moments of the cranks, shape
-        (positions, 2, cranks); zero where the carrier is held.
-        """
-        slope, lever = (
-            self._slope(np.sign(moments))[..., 0],
-            self.sun_radius * self.outward * self.axial / self.pitch_radius,
-        )
+        """Return force and lean of the wheel by the sun, N and N·mm, shape (positions, 2), and derivatives by cranks' moments."""
+        slope = self._slope(np.sign(moments))[..., 0]
+        lever = self.sun_radius * self.outward * self.axial / self.pitch_radius
         by_moments = (-1.0 if self.carried else 0.0) * np.stack((slope, self.plane * slope + lever), axis=1)
         return (by_moments * moments[:, None]).sum(axis=2), by_moments
 
     def on_bearings(self, moments: FloatArray) -> ComplexArray:
-        """Return what bearings of the cranks carry of the forces of the teeth, N, shape (positions, cranks, supports)."""
+        """Return the forces of the teeth on bearings of the cranks, N, shape (positions, cranks, supports)."""
         return np.asarray(np.matmul(self.on_planets(moments)[0], np.swapaxes(self.on_supports, -1, -2)))
 
     def on_planets(self, moments: FloatArray) -> tuple[ComplexArray, ComplexArray]:
-        """Return force and couple of the teeth on every planet, N and N·mm, shape (positions, cranks, 2), and their derivatives
-        by the moment of their own crank.
-        """
+        """Return force and couple on every planet, N and N·mm, shape (positions, cranks, 2), and derivatives by its moment."""
         slope = self._slope(np.sign(moments))
         return slope * moments[..., None], slope
 
     def together(self, sense: float) -> tuple[float, FloatArray]:
-        """Return how the cranks of one drive lag together on one flank, by the sense of the moments that hold them, ±1: by the
-        moment of all of them, shared evenly, rad/(N·mm), and by the coordinates, rad by mm or rad, shape (coordinates,).
-        """
+        """Return the lag of all cranks on one flank by their whole moment, shared evenly, rad/(N·mm), and by the coordinates."""
         pushed = self._slope(np.full((1, self.outward.shape[-1]), sense))[0]
         own = np.einsum("ci,ij,cj->c", pushed.conjugate(), self.own, pushed).real
         by_pose = np.einsum("ci,cin->cn", pushed.conjugate(), self.by_pose).real.mean(axis=0)
         return float(np.mean(np.squeeze(self.twist) + own)) / own.size, np.asarray(by_pose)
 
     def beside_discs(self, on_planets: ComplexArray) -> ComplexArray:
-        """Return what the two bearings of every crank carry of forces and couples on the planets while the planes of the discs
-        stand still, N, shape (positions, cranks, 2).
-        """
+        """Return the forces on the two bearings of every crank while the discs stand still, N, shape (positions, cranks, 2)."""
         return np.asarray(np.matmul(on_planets, np.swapaxes(self.by_bearings, -1, -2)))
 
     def on_coordinates(self, on_planets: ComplexArray) -> FloatArray:
@@ -231,14 +175,12 @@ class StageMesh:
         return np.asarray((self.by_pose.conjugate() * on_planets[..., None]).real.sum(axis=(-3, -2)))
 
     def _slope(self, sense: FloatArray) -> ComplexArray:
-        """Derivatives of force and couple by the moments of the cranks, whose senses are given, shape (positions, cranks, 2)."""
+        """Derivatives of force and couple by the moments of the cranks of given senses, shape (positions, cranks, 2)."""
         in_plane = (self.separating * sense - 1j) / self.pitch_radius * self.outward
         return np.stack(np.broadcast_arrays(in_plane, -self.axial * self.outward), axis=-1)
 
     def displaced(self, moments: FloatArray, pose: FloatArray, given: ComplexArray | None) -> ComplexArray:
-        """Return displacement and slope of every crank at its planet in the fixed frame, mm and rad, shape (positions, cranks,
-        2), at moments that hold the cranks; `given` are the displacements in their bearings, mm, shape (positions, cranks, 2).
-        """
+        """Return displacement and slope of every crank at its planet, mm and rad, shape (positions, cranks, 2)."""
         moved = np.matmul(self.by_pose, pose[:, None, :, None])[..., 0]
         if given is not None:
             moved = moved + np.matmul(given, self.by_bearings)
@@ -247,11 +189,7 @@ class StageMesh:
     def crank_lag(
         self, moments: FloatArray, displaced: ComplexArray | None = None, runout: FloatArray | None = None
     ) -> FloatArray:
-        """Return the angle of the cranks less the one that the held sun gives rigid teeth without play, rad, shape (positions,).
-
-        `displaced` is that of the cranks at their planets, `runout` what eccentricities add, rad, shape (positions,); None where
-        there is none.
-        """
+        """Return the angle of the cranks less that by the held sun on rigid teeth without play, rad, shape (positions,)."""
         each = self.twist * moments
         if displaced is not None:
             each = each + (self._slope(np.sign(moments)).conjugate() * displaced).real.sum(axis=-1)

@@ -14,7 +14,7 @@ from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 
 RESOLVED = 4
-"""Leading positions in a passage of a tooth, a hole or a roller, whichever are most: a pose between two is near then."""
+"""Leading positions in a passage of a tooth, a hole or a roller, whichever are most."""
 WORTH = 2
 """Positions for one leading, below which each might as well lead."""
 MOST = 8
@@ -27,15 +27,12 @@ Way: TypeAlias = tuple[NDArray[np.intp], FloatArray]
 
 
 def have_neighbours(moment: FloatArray) -> bool:
-    """Return whether positions under moments on the wheel, N·mm, are enough, all under the same, for one to lead others."""
+    """Return whether positions are enough, all under the same moment, for one to lead others."""
     return moment.size >= WORTH * RESOLVED and not np.ptp(moment) > 0.0
 
 
 def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
-    """Return which positions of one drive to balance first, in order of their angles; all where neighbours are no help.
-
-    Crank angles are in rad, moments on the wheel in N·mm: only positions under the same moment have neighbours.
-    """
+    """Return which positions of one drive to balance first, in order of their angles; all where neighbours are no help."""
     order = np.argsort(angle, kind="stable")
     place = geometry.placement
     if not have_neighbours(moment):
@@ -51,12 +48,7 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
 def between(angle: FloatArray, wanted: FloatArray) -> Way:
     """Return the known positions around each wanted crank angle, rad, and the weights that interpolate between these.
 
-    Known angles may stand in any order; beyond the first and the last there is nothing but these.
-
-    Examples
-    --------
-    >>> places, weights = between(np.arange(5.0), np.array([1.5]))
-    >>> places, weights
+    >>> between(np.arange(5.0), np.array([1.5]))
     (array([[0, 1, 2, 3]]), array([[-0.0625,  0.5625,  0.5625, -0.0625]]))
     """
     order = np.argsort(angle, kind="stable")
@@ -84,12 +76,8 @@ def between(angle: FloatArray, wanted: FloatArray) -> Way:
 def pose_between(
     angle: FloatArray, pose: FloatArray, wanted: FloatArray, coordinates: Coordinates, way: Way | None = None
 ) -> FloatArray:
-    """Return poses at wanted crank angles between known ones, interpolated as seen from the turning crank.
+    """Return poses at wanted crank angles, interpolated as seen from the turning crank; `way` is `between` by default.
 
-    Known angles, rad, may stand in any order; poses have the shape (positions, coordinates). `way` is `between` by default.
-
-    Examples
-    --------
     >>> known = np.array([[1.0, 0, 0, 0], [-1.0, 0, 0, 2]])
     >>> pose_between(np.array([0.0, np.pi]), known, np.array([0.5 * np.pi]), Coordinates()).round(9)
     array([[0., 1., 0., 1.]])
@@ -100,11 +88,7 @@ def pose_between(
 
 
 def start_between(angle: FloatArray, known: Start, wanted: FloatArray, ratio: float, way: Way) -> Start:
-    """Return inner unknowns between known ones: places on the flank as seen from the wheel and deformations interpolated, what
-    else is known from the nearest.
-
-    Angles, rad, and `way` are those of `between`; a pin moves along the flank by φ_C/u, u the `ratio`.
-    """
+    """Return inner unknowns, flank places (seen from the wheel) and deformations interpolated, others of the nearest position."""
     around, weights = way
 
     def at(values: FloatArray) -> FloatArray:

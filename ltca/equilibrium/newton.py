@@ -1,10 +1,7 @@
-r"""Damped Newton iteration for the pose in which a batch of positions balances, to the nearest minimum downhill.
+"""Damped Newton iteration for the pose in which a batch of positions balances, to the nearest minimum downhill.
 
-Before first contact the disc floats and the tangent is singular, so Newton's step is damped (Levenberg–Marquardt) and
-its length bounded. Π is convex but for the small geometric part, and stiff where contacts open and close: along each
-step the slope of Π is brought down by a bracketed secant before the step is taken, so Π falls in every iteration and no
-cycle is possible between contacts that take turns. Friction has no potential: positions with it that do not balance this way
-are balanced by the size of their residual.
+The step is damped (Levenberg–Marquardt) and bounded, and the slope of Π is brought down along it by a bracketed secant: Π falls
+in every iteration. Positions with friction, which has no potential, may be balanced by the size of their residual instead.
 """
 
 from __future__ import annotations
@@ -25,19 +22,16 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 TOLERANCE = 1e-9
 """Largest residual accepted, as a part of the load T/(e z_P)."""
 STEP_BOUND = 1e-3
-"""Largest first step of a mode as a part of e z_P (0.056 mm in the paper's drive): long against elastic approaches
-(µm), short against the radius of a flank (mm), and no length of its own, so that the size of a drive does not matter.
-It doubles while steps succeed, up to a tenth of the smallest pin, and halves when they have to be cut."""
+"""Largest first step of a mode by e z_P: long against elastic approaches, short against the radius of a flank."""
 MAX_LINE_SEARCH_STEPS = 12
 CREEPING_RESIDUAL = 0.01
-"""Residual, relative to the load, below which a position that did not balance is followed along its softest mode."""
+"""Residual, relative to the load, below which an unbalanced position is followed along its softest mode."""
 MAX_VALLEY_STEPS, MAX_WALL_STEPS = 60, 6
 """Steps along a soft mode, and steps of the other modes after each."""
 MAX_REDUCTION_STEPS = 60
 """Trial steps of the iteration that reduces the residual of a position with friction."""
 RESTART_PERTURBATIONS = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
-"""Relative random perturbations of the pose tried at restarts with friction: a disc that carries next to nothing may be caught
-between contacts on which friction does not let it rest, and carries nothing right beside."""
+"""Relative perturbations of the pose tried at restarts: friction may catch a disc that carries next to nothing."""
 HOLDING, HELD = 0.1, 1e-6
 """Residuals, relative to the load, between which the moment that holds the wheel follows the contacts."""
 RIDGE = 1e-9
@@ -57,27 +51,9 @@ Holding = Callable[[NDArray[np.intp], FloatArray, FloatArray, Any], FloatArray]
 class Search:
     """Damped Newton iteration of a batch; positions leave it as they balance.
 
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose.
-    angle, moment : array, shape (positions,)
-        φ_C, rad, and external moment on the wheel, N·mm.
-    lever : array, shape (coordinates,) or (positions, coordinates)
-        What turns the residual into forces, mm.
-    load : array, shape (positions,)
-        Moment by the lever of the wheel, N.
-    pose : array, shape (positions, coordinates)
-        Where to start; changed in place.
-    holding : Holding, optional
-        Which moments on the wheel give the output torque, of some positions by what their contacts have come to; `moment` is
-        changed in place by it.
-
-    Notes
-    -----
-    ``history`` are the residuals of each iteration, N, ``iterations`` the number for each position, ``balanced`` the
-    contacts of those that balance, group by group, and ``slipped`` tells where wheel or disc had turned by more than half
-    a pin pitch.
+    `lever`, mm, turns the residual into forces, `load` is the moment by the lever of the wheel, N. `pose` and, by `holding`,
+    `moment` are changed in place. ``history`` has the residuals of each iteration, N, ``balanced`` the contacts of positions
+    that balance, group by group; ``slipped`` are those whose wheel or disc had turned by more than half a pin pitch.
     """
 
     def __init__(
@@ -94,7 +70,6 @@ class Search:
         self.moment, self.holding = moment, holding
         self.pose = pose
         self.place = model.discs[0].geometry.placement
-        """The wheel's places are those of every disc."""
         self.smallest_pin = float(np.min(self.place.wheel_pin_radii))
         self.symmetric = model.symmetric
         self.half_pitch = np.pi / self.place.reduction_ratio
@@ -140,20 +115,9 @@ class Search:
         begin: Start | None = None,
         response: Response | Evaluation | None = None,
     ) -> NDArray[np.intp]:
-        """Move positions towards balance; return those of them that do not balance, ascending.
+        """Move positions towards balance, in place of the paper's iteration (Eq. 90–93); return those that do not balance.
 
-        Damped, with the analytic tangent, it stands in place of the iteration of the paper (Eq. 90–93).
-
-        Parameters
-        ----------
-        most : int
-            Iterations.
-        rows : array of int, optional
-            Which positions, ascending; all by default.
-        begin : Start, optional
-            Inner unknowns near the poses of these positions.
-        response : Response, optional
-            Their contacts at these poses, where they are known.
+        `rows` are ascending, all by default; `begin` has their inner unknowns and `response` their contacts, where known.
         """
         active = asked = np.arange(self.angle.size) if rows is None else rows
         first_bound = STEP_BOUND * float(np.max(self.lever[..., WHEEL_ANGLE]))
@@ -209,11 +173,7 @@ class Search:
         return np.nonzero(left)[0]
 
     def reduce_residual(self, row: int) -> bool:
-        """Balance a position with friction by the size of its residual alone; tell whether it does.
-
-        Friction has no potential: where it turns over the symmetric part of the tangent no step goes downhill, though the
-        tangent itself leads to balance.
-        """
+        """Balance a position with friction by the size of its residual alone; tell whether it does."""
         if self.slipped[row]:
             return False
         random = np.random.default_rng(0)  # the same position is always answered alike
@@ -265,12 +225,7 @@ class Search:
             return False
 
     def _follow_valley(self, row: int) -> bool:
-        """Walk along the softest mode.
-
-        A disc pressed by pins all around rolls in the wheel almost freely: the valley of Π is curved by the eccentricity,
-        and straight steps along it climb its walls. Here every step along the softest mode is followed by steps of all
-        other modes down to the bottom, and the slope along the bottom is brought to zero by secants.
-        """
+        """Follow the softest mode, down to the bottom after every step: straight steps along it climb the walls of Π."""
         rows = np.array([row])
         if self.slipped[row] or not self.residual[row] < CREEPING_RESIDUAL * self.load[row]:
             return False
@@ -306,7 +261,7 @@ class Search:
         return False
 
     def keep(self, rows: NDArray[np.intp], response: Response | Evaluation, balanced: NDArray[np.bool_]) -> None:
-        """Remember the contacts of those of some positions that balance."""
+        """Keep the contacts of those positions that balance."""
         kept = response.kept
         if balanced.all():
             self.balanced.append((rows, kept))
@@ -322,10 +277,7 @@ class Search:
         return self.balanced[0]
 
     def round_off(self, rows: NDArray[np.intp], response: Response | Evaluation) -> FloatArray:
-        """Return what round-off of the approaches makes of the residual, N.
-
-        Supports know displacements, not places, so however stiff they are they add nothing.
-        """
+        """Return the round-off of the residual by that of approaches, N; supports know displacements alone and add none."""
         size = float(np.max(np.abs(self.place.wheel_pin_centres)))
         stiffness = response.contact_stiffness / self.levers(rows) ** 2
         return np.asarray(ROUND_OFF * size * np.abs(stiffness.sum(axis=1)))
@@ -372,7 +324,7 @@ class Search:
 
 
 def _left_over(gradient: FloatArray, response: Response | Evaluation) -> FloatArray:
-    """Largest unbalanced force of every position, N, and what contacts and pins that have not settled amount to."""
+    """Largest unbalanced force of every position, N, or the uncertainty of contacts and pins that have not settled."""
     return np.asarray(np.maximum(np.max(np.abs(gradient), axis=1), response.left))
 
 
@@ -381,10 +333,8 @@ def _damped_step(
 ) -> tuple[FloatArray, FloatArray]:
     """Return the step of every mode, −g/(|λ| + μ tr(H)/n) within the bound, and the slope g·step.
 
-    With |λ| a mode of negative stiffness (pins squeezed by errors of single parts tip the wheel over) is left
-    downhill instead of being taken for a minimum; each mode has its own bound, so that a disc that floats in one
-    direction still corrects the others. Where all modes are stiff and none is bounded that is −(H + μ tr(H)/n)⁻¹g, found
-    without them. With friction H is not symmetric: modes are those of its symmetric part.
+    With |λ| a mode of negative stiffness is left downhill; each mode has its own bound, so that a disc that floats in one
+    direction still corrects the others. Where H is not symmetric the modes are those of its symmetric part.
     """
     stiffness = np.abs(np.trace(tangent, axis1=1, axis2=2)) / tangent.shape[1]
     # Nothing touches: any positive number gives the direction of the load, the bound gives the length.
@@ -402,13 +352,11 @@ def _damped_step(
 
 
 def _stiff_step(tangent: FloatArray, gradient: FloatArray, floor: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H + μ is safely positive definite.
-
-    Pivots are measured without μ, which must not make a soft mode stiff; elsewhere the step is of no use.
-    """
+    """Return −(H + μ)⁻¹g by Gauss's elimination of all positions at once, and where H + μ is safely positive definite."""
     size = gradient.shape[1]
     matrix, right = tangent.transpose(1, 2, 0).copy(), -gradient.T
     places = np.arange(size)
+    # Pivots are measured without μ, which must not make a soft mode stiff.
     least = LEAST_PIVOT_RATIO * matrix[places, places]
     matrix[places, places] += floor
     stiff = np.ones(gradient.shape[0], dtype=bool)

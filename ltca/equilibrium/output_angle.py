@@ -1,14 +1,4 @@
-r"""The angle of the wheel with the input held, and its free play: what stands before the cranks added to the cycloid stage.
-
-The cranks are where the analysis holds them. Between them and the input lies the first stage; by what its teeth yield and are
-free to turn, the cranks turn while the input is held, and the wheel by 1/u of it. Whatever else lies between input and output
-and yields or has play joins here, and every transmission error, wind-up, lost motion and backlash has it.
-
-Eccentric teeth turn each crank by an angle of its own. What the wheel turns by that follows from the energy E of everything that
-yields, as a function of the torque at the wheel and of the angles φ_c of the cranks: :math:`w = \partial E/\partial T`,
-:math:`T_c = \partial E/\partial \varphi_c`, so :math:`\partial w/\partial\varphi_c = \partial T_c/\partial T` (Maxwell's
-reciprocity). A crank counts by what it takes of a little more torque, not by the torque that it carries.
-"""
+"""The angle of the wheel with the input held, and its free play: those of the first stage join those of the cycloid stage."""
 
 from __future__ import annotations
 
@@ -21,7 +11,7 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.geometry.coordinates import WHEEL_ANGLE
 
 LITTLE_MORE = 1e-3
-"""More torque, by that of all pins, at which shares of cranks are taken: over it they change by some 1e-4 of a part."""
+"""Additional torque, by that of all pins, at which shares of cranks are taken; over it they change by some 1e-4."""
 FLOATS = 1e-9
 """Stiffness by the largest one, as forces at the pitch circles, below which nothing holds a motion."""
 
@@ -43,11 +33,7 @@ def crank_lag(model: Reducer, found: Equilibrium) -> FloatArray:
 
 
 def shares_of_cranks(model: Reducer, found: Equilibrium, moments: FloatArray) -> FloatArray:
-    """Return what each crank takes of a little more torque at the wheel, parts of one, shape (positions, cranks).
-
-    By a difference of the moments that hold the cranks, N·mm, along the motion that the torque makes; not a number where a
-    position has no answer.
-    """
+    """Return shares of cranks in a little more torque at the wheel (Maxwell), shape (positions, cranks); NaN without answer."""
     response, shares = found.response, np.full(moments.shape, np.nan)
     rows = np.nonzero(np.isfinite(response.tangent).all(axis=(1, 2)) & np.isfinite(moments).all(axis=1))[0]
     if not rows.size:
@@ -75,5 +61,5 @@ def wheel_angle_of_input(model: Reducer, found: Equilibrium) -> FloatArray:
 
 
 def play_before_cranks(model: Reducer, crank_angle: FloatArray) -> FloatArray:
-    """Return the free play of the wheel by what lies between input and cranks, rad, shape (positions,)."""
+    """Return the free play of the wheel by the first stage, rad, shape (positions,)."""
     return np.zeros(crank_angle.shape) if model.stage is None else model.stage.play(crank_angle)

@@ -1,16 +1,7 @@
 r"""Equilibrium at a given torque of the output, whichever member is held.
 
-With the pin shaft held the output is the wheel, and its moment is the torque. With the wheel held the output is the pin
-shaft: what holds the wheel then follows from the sum of all moments about its axis,
-:math:`T_W + T_{in} + T_{out} + w \times G = 0`, with the moment of the input at every position: that of a central crank, of the
-sun of a first stage, or none where the shaft itself turns its cranks. A force G on the wheel relative to the shaft, from outside
-or by the teeth of a first stage, acts on the shaft at its axis and is held at that of the wheel, which a main bearing that yields
-leaves displaced by w. Contacts do not care who is held.
-
-The moment of a crank is that of virtual work, with its cages geared to it. The forces on the crank alone have the moment
-:math:`T_C - k M_K` about its axis, with the part k of the crank's angle by which cages turn, and cages are held by the moments
-:math:`M_K` (`cage_moments`): of all forces :math:`T_W + \sum T_C + (1 - k) \sum M_K + T_{PS} = 0` with what holds the pin shaft.
-The output torque of a drive whose wheel is held differs from the forces' by as much.
+With the wheel held the output is the pin shaft, and its moments balance by :math:`T_W + T_{in} + T_{out} + w \times G = 0` with
+the force G on the wheel, displaced by w against the shaft, from outside and by the first stage.
 """
 
 from __future__ import annotations
@@ -31,26 +22,21 @@ from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 
 Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
-"""What balances positions: crank angles, moments on the wheel and poses to start from."""
+"""Function that balances positions: crank angles, moments on the wheel and poses to start from."""
 
 MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
-"""First and least step of the continuation in the strength of friction: where a step of the least size fails, the drive jams
-between two hundredths of its friction."""
+"""First and least step of the continuation in the strength of friction."""
 JAMMING_LOAD_RATIO = 2.0
-"""Ratio of the loads with and without friction from which the end of the continuation is reported as jamming."""
+"""Ratio of the loads with and without friction from which the end of the continuation counts as jamming."""
 
 
 def unbalanced_moment(
     model: Reducer, found: Equilibrium, input_per_crank_moment: FloatArray, output: FloatArray | float
 ) -> FloatArray:
-    """Return what is left of the moments about the axis of the shaft, ccw positive, N·mm, shape (positions,).
-
-    `input_per_crank_moment` is that of the drive of each position, and `output` the torque on the output. What seals and oil take
-    at the input is not in it.
-    """
+    """Return the sum of moments about the axis of the shaft without drag of seals, ccw positive, N·mm, shape (positions,)."""
     pressed = _moment_of_contacts(model, found.crank_angle, found.pose, found.response.parts, input_per_crank_moment)
     return np.asarray(found.wheel_moment + pressed + output)
 
@@ -58,7 +44,7 @@ def unbalanced_moment(
 def _moment_of_contacts(
     model: Reducer, angle: FloatArray, pose: FloatArray, parts: Any, input_per_crank_moment: FloatArray
 ) -> FloatArray:
-    """What is left of the moments but those on wheel and output."""
+    """Sum of the moments without those on wheel and output."""
     left = input_per_crank_moment * model.crank_moments(angle, pose, parts).sum(axis=1)
     if model.coordinates.wheel or model.coordinates.wheel_leans:
         for place, pressed in zip(model.wheel_places, model.beside_pins(angle, pose, parts).T, strict=True):
@@ -76,36 +62,9 @@ def solve_at_output(
     inner: Start | None = None,
     wheel_moment: FloatArray | None = None,
 ) -> Equilibrium:
-    """Balance positions at output torques.
+    """Balance positions at output torques, N·mm, positive as `load.direction` says; without any the parts must hold each other.
 
-    With friction they start from the answer without, and are followed through growing coefficients where that is too far.
-
-    Parameters
-    ----------
-    model : Reducer
-        Loads at a pose, of one drive or of a batch.
-    drives : sequence of Drive
-        The drives of the batch, often one; all have the same number of positions, drive by drive.
-    crank_angle : array, shape (positions,)
-        φ_C, rad.
-    torque : float or array, shape (positions,)
-        On the output, N·mm, positive as `load.direction` says; a negative one loads the other way. Without any the parts
-        must hold each other.
-    start : array, shape (positions, coordinates), optional
-        Poses to start from, first contact by default.
-    inner : Start, optional
-        Inner unknowns near those poses.
-    wheel_moment : array, shape (positions,), optional
-        Moments on the wheel to start from, N·mm; those of the mean of a turn by default.
-
-    Returns
-    -------
-    Equilibrium
-
-    Raises
-    ------
-    ConvergenceError
-        When a position does not balance.
+    The `drives` of a batch have equally many positions, drive by drive; `wheel_moment` are moments to start from.
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
@@ -155,12 +114,7 @@ def _jam(
     grown: FloatArray,
     failure: ConvergenceError,
 ) -> ConvergenceError:
-    """Return what to say of positions that balance up to a part of their friction: that they jam, and at which coefficients.
-
-    Friction goes with the loads. What is left of a unit load's moment falls as friction rises, and the loads grow by its
-    inverse; where that comes down to nothing before the whole friction counts no load whatever balances the torque. What
-    the search made of the whole friction at once (that the teeth slip) tells nothing of that.
-    """
+    """The error of positions that balance up to a part of their friction only: that they jam, and at which coefficients."""
     row = int(np.argmax(grown / np.maximum(without, 1e-300)))
     friction = drives[row * len(drives) // grown.size].friction
     names = () if friction is None else ("pin", "seat", "hole", "roller", "support_bearing")
@@ -181,30 +135,14 @@ def _jam(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OutputTorque:
-    """Torques that positions of drives are balanced at, one row for each.
+    """Torques at which positions are balanced, N·mm, one row for each."""
 
-    Attributes
-    ----------
-    signed : array
-        Torque on the output, ccw positive, N·mm.
-    mean : array
-        Moment on the wheel that it is in the mean of a turn, N·mm.
-    held : array of bool
-        Where the wheel is held.
-    input_per_crank_moment : array
-        Moment of the input by that of the cranks.
-    by_wheel : array
-        Mean of the output torque by the moment on the wheel, without sign.
-    reference : array
-        Torque that what is left over is measured by where the output torque is smaller, N·mm.
-    """
-
-    signed: FloatArray
-    mean: FloatArray
-    held: NDArray[np.bool_]
+    signed: FloatArray  # on the output, ccw positive
+    mean: FloatArray  # moment on the wheel that it is in the mean of a turn
+    held: NDArray[np.bool_]  # where the wheel is held
     input_per_crank_moment: FloatArray
-    by_wheel: FloatArray
-    reference: FloatArray
+    by_wheel: FloatArray  # mean output torque by the moment on the wheel, without sign
+    reference: FloatArray  # that residuals are measured by where the output torque is smaller
 
     @classmethod
     def of_drives(cls, drives: Sequence[Drive], loads: FloatArray) -> OutputTorque:
@@ -224,7 +162,7 @@ class OutputTorque:
         )
 
     def holding(self, model: Reducer, crank_angle: FloatArray) -> Holding | None:
-        """Return which moments hold the wheel, of some positions by what their contacts have come to; None where none is held."""
+        """Return the function that finds moments on held wheels by the contacts of some positions; None where none is held."""
         if not np.any(self.held):
             return None
 
@@ -236,10 +174,7 @@ class OutputTorque:
         return moments
 
     def balanced(self, model: Reducer, found: Equilibrium, balance: Balance | None = None) -> Equilibrium:
-        """Find the moments on held wheels by secants, where the search has not come close enough (`holding`).
-
-        Positions are followed by Newton's method, or solved anew by `balance` from poses near by.
-        """
+        """Find the moments on held wheels by secants, following positions by Newton's method, or anew by `balance`."""
         held, moment = self.held, found.wheel_moment.copy()
         if not np.any(held):
             return found

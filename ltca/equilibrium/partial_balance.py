@@ -14,20 +14,20 @@ from ltca.equilibrium.balance import Equilibrium
 from ltca.errors import ConvergenceError
 
 Balance = Callable[[FloatArray, float, FloatArray | None], Equilibrium]
-"""What balances positions: crank angles, output torque and poses near by if there are any."""
+"""Function that balances positions: crank angles, output torque and poses near by if there are any."""
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PartlyBalanced:
-    """Which positions have an answer, that of these, and the failure of the first that has none."""
+    """Positions that have an answer, their answer, and the failure of the first that has none."""
 
     balanced: NDArray[np.bool_]
     found: Equilibrium
     failure: ConvergenceError | None = None
 
     def spread(self, value: Value) -> Value:
-        """Return a tree of arrays of the balanced positions as one of all positions: no numbers elsewhere."""
+        """Return a tree of arrays of the balanced positions as one of all positions, NaN elsewhere."""
         if self.failure is None:
             return value
         return spread_positions(value, np.flatnonzero(self.balanced), self.balanced.size)
@@ -45,10 +45,9 @@ def balance_what_can_be(
     start: FloatArray | None = None,
     like: Equilibrium | None = None,
 ) -> PartlyBalanced:
-    """Balance positions together, and where that fails find out which of them have an answer.
+    """Balance positions together, and where that fails each one that has an answer; poses to start from may be NaN.
 
-    Poses to start from, shape (positions, coordinates), are not a number where there is none. Where no position has an answer
-    arrays have the shapes of those of `like`; without it the ConvergenceError of all together is raised.
+    Where none has an answer arrays are shaped like those of `like`; without that the ConvergenceError of all is raised.
     """
     failures: list[ConvergenceError] = []
     pieces: list[tuple[NDArray[np.intp], Equilibrium]] = []

@@ -1,10 +1,4 @@
-"""A reducer of several discs: every disc a member with its own joints to wheel, crank and pin shaft, one wheel for all.
-
-The coordinates are those of disc after disc and the wheel's (`ltca.geometry.coordinates`). A pair touches the columns of its
-disc and of the wheel only, so force and tangent of the reducer are those of its discs, put in their places and summed at the
-wheel; supports are springs on coordinates.
-Pairs are numbered disc after disc: of n discs array axes for pairs are n times as long.
-"""
+"""A reducer of several discs, which share wheel, cranks and pin shaft; pairs are numbered disc after disc."""
 
 from __future__ import annotations
 
@@ -56,30 +50,12 @@ POSITIONS_AT_ONCE = 512
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reducer:
-    """Discs that share wheel, cranks and pin shaft, and what these rest on.
+    """Discs that share wheel, cranks and pin shaft, and what these rest on."""
 
-    Attributes
-    ----------
-    discs : tuple of DiscModel
-        How the contacts of each disc yield, all by the same model.
-    supports : Supports or None
-        Springs on coordinates; None where nothing yields.
-    pins : PinDisplacements or None
-        What displaces pins: beams under several discs, the ring of the wheel.
-    flange : array, shape (3, 3) or (positions, 3, 3), or None
-        What of the supports holds the far flange of a carrier (`ltca.laws.carrier`); None without posts.
-    friction : TurningFriction or None
-        What rubs.
-    stage : StageMesh or None
-        Teeth of the first stage.
-    external : ExternalForce or None
-        Forces from outside on the output.
-    """
-
-    discs: tuple[DiscModel, ...]
+    discs: tuple[DiscModel, ...]  # all by the same model
     supports: Supports | None = None
-    pins: PinDisplacements | None = None
-    flange: FloatArray | None = by_drive(2, default=None)
+    pins: PinDisplacements | None = None  # beams under several discs, the ring of the wheel
+    flange: FloatArray | None = by_drive(2, default=None)  # stiffness that holds the far flange of a carrier
     friction: TurningFriction | None = None
     stage: StageMesh | None = None
     external: ExternalForce | None = None
@@ -106,7 +82,7 @@ class Reducer:
 
     @property
     def symmetric(self) -> bool:
-        """Whether its forces are slopes of a potential: neither friction nor forces that go with the moments of the cranks."""
+        """Whether its forces have a potential: neither friction nor forces that go with the moments of the cranks."""
         return self.friction is None and not self._teeth_press
 
     @property
@@ -117,7 +93,7 @@ class Reducer:
 
     @property
     def coordinates(self) -> Coordinates:
-        """What its poses are made of."""
+        """The coordinates of its poses."""
         return replace(self.discs[0].geometry.coordinates, discs=len(self.discs))
 
     @property
@@ -128,50 +104,8 @@ class Reducer:
     def respond(
         self, crank_angle: FloatArray, pose: FloatArray, start: Start | None = None, *, roughly: bool = False
     ) -> Response:
-        """Return the contact forces of all discs.
-
-        Parameters
-        ----------
-        crank_angle : array, shape (positions,)
-            φ_C, rad.
-        pose : array, shape (positions, coordinates)
-            q of `ltca.geometry.coordinates`.
-        start : Start, optional
-            Inner unknowns of a neighbouring pose, displacements of the pins among them.
-        roughly : bool
-            Whether contacts in slices and displacements of pins that have nearly settled will do: force and tangent are then
-            those of settled ones to first order, and `Response.left` tells what is left.
-        """
+        """Return the contact forces of all discs; settled to first order if `roughly`, with the rest in `Response.left`."""
         return self.evaluate(crank_angle, pose, start, roughly=roughly).whole
-
-    def _hold(
-        self,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        parts: Sequence[DiscResponse],
-        force: FloatArray,
-        tangent: FloatArray,
-    ) -> FloatArray:
-        """Add what first stage, supports, forces from outside and friction of bearings do to force and tangent, in place; return
-        the diagonal of the tangent of the contacts alone.
-        """
-        contact_stiffness = np.asarray(np.einsum("bii->bi", tangent).copy(), dtype=float)
-        beside_discs: tuple[ComplexArray, FloatArray] | tuple[()] = ()
-        if self.stage is not None and self._teeth_press:
-            beside_discs = self._press_teeth(self.stage, crank_angle, pose, parts, force, tangent)
-        if self.supports is not None:
-            held, stiffness = self.supports.respond(pose, *beside_discs)
-            force += held
-            tangent += stiffness
-        if self.external is not None:
-            pressed = self.external.on_wheel(crank_angle).view(float)
-            for number, place in enumerate(self.wheel_places):
-                force[:, place] -= pressed[:, 2 * number : 2 * number + place.size]
-        if self.friction is not None:
-            ratio = self.discs[0].geometry.placement.reduction_ratio
-            beside = self.beside_pins(crank_angle, pose, parts)[:, 0]
-            force[:, WHEEL_ANGLE] += self.friction.of_wheel(parts, ratio, beside)
-        return contact_stiffness
 
     def evaluate(
         self,
@@ -182,10 +116,7 @@ class Reducer:
         roughly: bool = False,
         everything: bool = False,
     ) -> Evaluation:
-        """Return what a search asks for at poses; arguments as for `respond`, which makes a whole response of it.
-
-        `everything` takes all contacts that others move as candidates to carry (`Evaluation.overlooks`).
-        """
+        """Return the contacts as a search needs them; `everything` takes all contacts that others move as candidates."""
         rows, system = crank_angle.size, ContactSystem(self)
         most = min(POSITIONS_AT_ONCE, system.positions_at_once)
         if rows > most:
@@ -204,9 +135,7 @@ class Reducer:
         return found
 
     def whole_tangent(self, crank_angle: FloatArray, pose: FloatArray, start: Start, lever: FloatArray) -> FloatArray:
-        """Return the derivative of the force by the pose, with what the search leaves out, shape (positions, coordinates,
-        coordinates); `lever` are the lengths by which coordinates are displacements, mm (`ltca.mechanics.full_tangent`).
-        """
+        """Return the derivative of the force by the pose with nothing left out (`ltca.mechanics.full_tangent`)."""
         most = min(POSITIONS_AT_ONCE, ContactSystem(self).positions_at_once)
         found = []
         for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // most))):
@@ -216,33 +145,40 @@ class Reducer:
         return np.concatenate(found)
 
     def _evaluated(self, at: Linearised) -> Evaluation:
-        """What a search asks for of contacts at poses, with supports, friction of bearings and forces from outside."""
-        pose, rows = at.pose, at.angle.size
+        """Contacts at poses with first stage, supports, forces from outside and friction of bearings."""
+        angle, pose, friction, found = at.angle, at.pose, self.friction, _Evaluated(self, at)
         force, tangent = at.force.copy(), at.tangent.copy()
-        found = _Evaluated(self, at)
-        if self.friction is not None:
+        if friction is not None:
             for number, part in enumerate(found.parts):
                 own, geometry = self.coordinates.columns(number), self.discs[number].geometry
                 push = np.abs(bearing_pushes(part.rollers, geometry.placement.cranks))
-                force[:, own] += self.friction.of_bearings(geometry, pose[:, own], push)
-        needs_parts = self.friction is not None or (self.stage is not None and self._teeth_press)
-        stiffness = self._hold(at.angle, pose, found.parts if needs_parts else (), force, tangent)
+                force[:, own] += friction.of_bearings(geometry, pose[:, own], push)
+        contact_stiffness = np.asarray(np.einsum("bii->bi", tangent).copy(), dtype=float)
+        beside: tuple[ComplexArray, FloatArray] | tuple[()] = ()
+        if self.stage is not None and self._teeth_press:
+            beside = self._press_teeth(self.stage, found, force, tangent)
+        if self.supports is not None:
+            held, stiffness = self.supports.respond(pose, *beside)
+            force += held
+            tangent += stiffness
+        if self.external is not None:
+            pressed = self.external.on_wheel(angle).view(float)
+            for number, place in enumerate(self.wheel_places):
+                force[:, place] -= pressed[:, 2 * number : 2 * number + place.size]
+        if friction is not None:
+            ratio, on_wheel = self.geometries[0].placement.reduction_ratio, self.beside_pins(angle, pose, found.parts)
+            force[:, WHEEL_ANGLE] += friction.of_wheel(found.parts, ratio, on_wheel[:, 0])
         return Evaluation(
             force=force,
             tangent=tangent,
-            contact_stiffness=stiffness,
+            contact_stiffness=contact_stiffness,
             left=at.left,
-            block=np.full(rows, found, dtype=object),
-            row=np.arange(rows),
+            block=np.full(angle.size, found, dtype=object),
+            row=np.arange(angle.size),
         )
 
     def crank_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
-        """Return the external moment that holds each crank by virtual work, ccw positive, N·mm, shape (positions, cranks).
-
-        It is ∂U/∂φ_C of the contacts: the moment of every bearing's force about the crank axis, which is that of the forces on
-        the crank alone, and that of its cages (`cage_moments`) times `cage_speed`, the part of the crank's angle by which they
-        turn. Friction at the crank adds its own.
-        """
+        """Return the moment that holds each crank by virtual work, ∂U/∂φ_C, ccw positive, N·mm, shape (positions, cranks)."""
         cranks = self.discs[0].geometry.placement.cranks
         pushes = [bearing_pushes(part.rollers, cranks) for part in parts]
         total = self.discs[0].geometry.placement.cage_speed * self.cage_moments(crank_angle, pose, parts)
@@ -255,12 +191,8 @@ class Reducer:
         return total + self.friction.of_cranks(pushes, on_bearings)
 
     def cage_moments(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> FloatArray:
-        """Return the external moment that holds the cages of each crank at their angle, ccw positive, N·mm, (positions, cranks).
-
-        Cage and inner race are concentric and the race pushes its rollers along its radii, the bore along its own: what holds
-        the cage is the moment of the bearing's force at the displaced centre of the bore, and of its couple at the bore's lean in
-        the race, the sum over all discs.
-        """
+        """Return the moment that holds the cages of each crank, ccw positive, N·mm, shape (positions, cranks)."""
+        # Those of the bearing's force at the displaced centre of the bore, and of its couple at the bore's lean in the race.
         cranks = self.discs[0].geometry.placement.cranks
         total = np.zeros((crank_angle.size, cranks))
         for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
@@ -273,9 +205,7 @@ class Reducer:
         return total
 
     def beside_pins(self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]) -> ComplexArray:
-        """Return the force on the wheel relative to the pin shaft from outside and by the teeth of a first stage, N, and what
-        they press its lean with, N·mm, shape (positions, 2).
-        """
+        """Return the force on the wheel from outside and by a first stage, N, and on its lean, N·mm, shape (positions, 2)."""
         total = np.zeros((crank_angle.size, 2), dtype=complex)
         if self.external is not None:
             total = total + self.external.on_wheel(crank_angle)
@@ -292,29 +222,17 @@ class Reducer:
     def carried_beside_discs(
         self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse]
     ) -> ComplexArray | None:
-        """Return what the two bearings of every crank carry of the forces of a first stage while the planes of the discs stand
-        still, N, shape (positions, cranks, 2); None without these forces.
-        """
+        """Return `StageMesh.beside_discs` of the first stage, N, shape (positions, cranks, 2); None without its forces."""
         if self.stage is None or not self.stage.yields:
             return None
         return self.stage.beside_discs(self.stage.on_planets(self.crank_moments(crank_angle, pose, parts))[0])
 
     def _press_teeth(
-        self,
-        stage: StageMesh,
-        crank_angle: FloatArray,
-        pose: FloatArray,
-        parts: Sequence[DiscResponse],
-        force: FloatArray,
-        tangent: FloatArray,
+        self, stage: StageMesh, found: _Evaluated, force: FloatArray, tangent: FloatArray
     ) -> tuple[ComplexArray, FloatArray] | tuple[()]:
-        """Take the forces of the first stage from the coordinates of cranks, flange and wheel, in place, before any but contacts
-        press, and return what the bearings of the cranks carry of them while the discs stand still, with its derivatives.
-
-        Where cranks are rigid, the derivatives of what the planets press on main bearing and flange are left out.
-        """
-        moments = self.crank_moments(crank_angle, pose, parts)
-        slopes = self._moment_slopes(crank_angle, pose, parts, tangent)
+        """Subtract the forces of the first stage, in place; return `beside` and `slopes` of `Supports.respond`."""
+        moments = self.crank_moments(found.at.angle, found.at.pose, found.parts)
+        slopes = self._moment_slopes(found, tangent)
         on_wheel, by_moments = stage.on_wheel(moments)
         moved = np.einsum("pkc,pcj->pkj", by_moments, slopes)
         for number, place in enumerate(self.wheel_places):
@@ -331,19 +249,15 @@ class Reducer:
         both = np.stack((changes.real, changes.imag), axis=-1).reshape(*moments.shape, -1, 1)
         return carried, both * slopes[:, :, None]
 
-    def _moment_slopes(
-        self, crank_angle: FloatArray, pose: FloatArray, parts: Sequence[DiscResponse], tangent: FloatArray
-    ) -> FloatArray:
-        """Derivatives of the moments that hold the cranks by the pose, shape (positions, cranks, coordinates), from the tangent
-        of the contacts; zero where cranks are rigid, whose forces it does not have.
-        """
-        coordinates, cage = self.coordinates, np.asarray(self.discs[0].geometry.placement.cage_speed)
-        slopes = np.zeros((crank_angle.size, self.discs[0].geometry.placement.cranks, coordinates.size))
+    def _moment_slopes(self, found: _Evaluated, tangent: FloatArray) -> FloatArray:
+        """Derivatives of the moments of the cranks by the pose, shape (positions, cranks, coordinates); zero of rigid cranks."""
+        coordinates, place, angle = self.coordinates, self.geometries[0].placement, found.at.angle
+        cage, slopes = np.asarray(place.cage_speed), np.zeros((angle.size, place.cranks, coordinates.size))
         if not coordinates.cranks:
             return slopes
-        for number, (disc, part) in enumerate(zip(self.discs, parts, strict=True)):
+        for number, (geometry, part) in enumerate(zip(self.geometries, found.parts, strict=True)):
             own = coordinates.columns(number)
-            bores = disc.geometry.bores(crank_angle, pose[:, own])
+            bores = geometry.bores(angle, found.at.pose[:, own])
             x = own[coordinates.crank(0) + 2 * np.arange(coordinates.cranks)]
             arm = bores.lever + cage * bores.displacement
             changes = tangent[:, x] + 1j * tangent[:, x + 1]
@@ -378,23 +292,13 @@ class _Evaluated:
 
     @cached_property
     def start(self) -> Start:
-        """Where other poses of the same positions start."""
+        """Start for other poses of the same positions."""
         return self.at.onward
 
 
 @dataclass(frozen=True, slots=True)
 class Evaluation:
-    """What a search asks for at the poses of some positions.
-
-    Attributes
-    ----------
-    force, tangent, contact_stiffness, left : array
-        Of `Response`.
-    block : array of object, shape (positions,)
-        What each position was evaluated with.
-    row : array of int, shape (positions,)
-        Its number there.
-    """
+    """Contacts at poses as a search needs them; row `row` of `block` has the rest of each position."""
 
     force: FloatArray
     tangent: FloatArray
@@ -404,7 +308,7 @@ class Evaluation:
     row: NDArray[np.intp]
 
     def _gathered(self, of_block: Callable[[_Evaluated], Result]) -> Result:
-        """What blocks have, of the positions in their order."""
+        """Values of blocks, of the positions in their order."""
         order: list[NDArray[np.intp]] = []
         each: list[Result] = []
         numbers = np.arange(self.row.size)
@@ -430,7 +334,7 @@ class Evaluation:
 
     @property
     def start(self) -> Start:
-        """Where other poses of the same positions start."""
+        """Start for other poses of the same positions."""
         return self._gathered(lambda found: found.start)
 
     @property

@@ -1,20 +1,9 @@
-r"""What holds wheel and cranks: springs on coordinates, linear ones and those of bearings with clearance or preload.
+r"""Springs on coordinates: crankshafts as beams on their bearings, and the wheel on its own (``docs/how-to/supports.md``).
 
-Every crank is a beam on two bearings (`ltca.beam`); its stiffness ties x and y of the crank in the planes of the discs,
-alike in every direction. Where it twists its stiffness in torsion ties the angles of its eccentrics against the splined planet.
-The wheel's main bearing holds its x and y, and its lean where it yields in tilt: rows each at its pressure centre. A ring that
-ties the tips of the shaft pins is held by what the pins resist when it moves all tips; as the far flange of a carrier it is held
-by the posts as well (`ltca.laws.carrier`), and the far bearings of the cranks stand in it: a crank bends by its displacement
-relative to the straight line between its bearings. Linear springs are one matrix.
+With the displacements w in bearings with clearance or preload, K of the shaft on springs, and the parts L of forces on
+bearings,
 
-A bearing with clearance, or one of whose sides lifts off, is a spring in series with a displacement w along its reaction R
-(`ltca.laws.bearing_pair.SideLaw`). With the stiffness K of the shaft on its springs and the parts L of a force that each
-bearing carries, the stored energy is
-
-.. math:: U(u) = \min_w \tfrac12 (u - Lw)^T K (u - Lw) + \sum \psi(w), \qquad f = K (u - Lw), \quad R = L^T f,
-
-which is convex and smooth: the force is unique even where a shaft floats in its clearances and w is not. What presses a shaft
-beside the discs, such as the teeth of a first stage, adds to R what the bearings carry of it while the discs stand still.
+.. math:: U(u) = \min_w \tfrac12 (u - Lw)^T K (u - Lw) + \sum \psi(w), \qquad f = K (u - Lw), \quad R = L^T f .
 """
 
 from __future__ import annotations
@@ -34,11 +23,7 @@ from ltca.drive.pin_beams import shaft_pin_beam
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
-from ltca.laws.bearing_pair import (
-    RollingRow,
-    SideLaw,
-    facing_of,
-)
+from ltca.laws.bearing_pair import RollingRow, SideLaw, facing_of
 from ltca.laws.carrier import far_flange_stiffness
 
 MAX_ITERATIONS = 80
@@ -48,29 +33,14 @@ SETTLED = 1e-13
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BearingSupport:
-    """A shaft, or the wheel, on bearings with clearance or preload.
+    """A shaft, or the wheel, on bearings with clearance or preload; all arrays may have the positions in front."""
 
-    All arrays may have the positions in front.
-
-    Attributes
-    ----------
-    by_pose : array, shape (2·planes, coordinates)
-        x and y in each plane in turn, relative to what its bearings stand in, by the coordinates; leans there follow, where discs
-        lean, as if they were planes.
-    stiffness : array, shape (planes, planes)
-        K of forces in the planes on springs alone, N/mm.
-    shares : array, shape (planes, bearings)
-        L, part of a force in each plane that each bearing carries.
-    gap, lift_off, beyond : array, shape (bearings,)
-        Of `SideLaw`, mm, N and mm/N.
-    """
-
-    by_pose: FloatArray = by_drive(2)
-    stiffness: FloatArray = by_drive(2)
-    shares: FloatArray = by_drive(2)
-    gap: FloatArray = by_drive(1)
-    lift_off: FloatArray = by_drive(1)
-    beyond: FloatArray = by_drive(1)
+    by_pose: FloatArray = by_drive(2)  # x and y of planes, and of leans, in turn, shape (2·planes, coordinates)
+    stiffness: FloatArray = by_drive(2)  # K, N/mm, shape (planes, planes)
+    shares: FloatArray = by_drive(2)  # L, shape (planes, bearings)
+    gap: FloatArray = by_drive(1)  # of `SideLaw`, mm, shape (bearings,)
+    lift_off: FloatArray = by_drive(1)  # N
+    beyond: FloatArray = by_drive(1)  # mm/N
 
     @classmethod
     def of_laws(
@@ -87,9 +57,8 @@ class BearingSupport:
     ) -> tuple[FloatArray, FloatArray]:
         """Return generalised force and tangent, shapes (positions, coordinates) and (positions, coordinates, coordinates).
 
-        `beside` is what each bearing carries of forces beside the planes while these stand still, N, shape (positions,
-        bearings), and `slopes` its derivatives by the pose, x and y of every bearing in turn, shape (positions, 2·bearings,
-        coordinates). These forces act on the planes elsewhere.
+        `beside` are forces that bearings carry while the planes stand still, N, shape (positions, bearings), `slopes` their
+        derivatives by the pose, x and y of every bearing in turn, shape (positions, 2·bearings, coordinates).
         """
         displaced, given, by_given = self._settle(pose, beside)
         force = self._forces(displaced, given)
@@ -112,9 +81,7 @@ class BearingSupport:
         return np.asarray(0.5 * (rest.conj() * _times(self.stiffness, rest)).real.sum(axis=1) + softer.sum(axis=1))
 
     def reactions(self, pose: FloatArray, beside: ComplexArray | None = None) -> ComplexArray:
-        """Return the force of each bearing on shaft or wheel, x + iy, N, shape (positions, bearings); `beside` as for
-        `respond`.
-        """
+        """Return the force of each bearing on shaft or wheel, x + iy, N, shape (positions, bearings)."""
         displaced, given, _ = self._settle(pose, beside)
         carried = _times(self.shares.swapaxes(-1, -2), self._forces(displaced, given))
         return -carried if beside is None else -(carried + beside)
@@ -127,12 +94,7 @@ class BearingSupport:
         return _times(self.stiffness, displaced - _times(self.shares, given))
 
     def _settle(self, pose: FloatArray, beside: ComplexArray | None) -> tuple[ComplexArray, ComplexArray, FloatArray]:
-        """u of every plane, w of every bearing, mm, complex, and its derivative by Lᵀ K u, real and imaginary parts in turn.
-
-        Bearing by bearing w is a function of what its reaction is without it (`_given`); several are brought together by
-        Newton's method on these functions, which are piecewise smooth, with a sweep bearing by bearing before every step:
-        sweeps alone never raise the energy, and find the right pieces.
-        """
+        """u of every plane, w of every bearing, mm, complex, and its derivative by Lᵀ K u, real and imaginary parts in turn."""
         both = np.matmul(self.by_pose, pose[..., None])[..., 0]
         displaced = both[:, ::2] + 1j * both[:, 1::2]
         lost = np.matmul(self.stiffness, self.shares)
@@ -149,6 +111,7 @@ class BearingSupport:
         if count == 1:
             given, slope = self._given(push, own)
             return displaced, given, _blocks(slope)
+        # Newton's method on piecewise smooth functions: sweeps before its steps find the pieces, and never raise the energy.
         for _ in range(MAX_ITERATIONS):
             for bearing in range(count):
                 given[:, bearing] = self._given(push - _times(coupled, given), own)[0][:, bearing]
@@ -167,7 +130,7 @@ class BearingSupport:
         )
 
     def _given(self, push: ComplexArray, own: FloatArray) -> tuple[ComplexArray, FloatArray]:
-        """w by what each reaction is without it and the stiffness `own` against it, and its derivative, shape (…, 2, 2)."""
+        """w by the reactions without it and the stiffness `own` against it, and its derivative, shape (…, 2, 2)."""
         size = np.abs(push)
         ahead = np.divide(push, size, out=np.ones_like(push), where=size > 0.0)
         stiff = np.where(own > 0.0, own, 1.0)
@@ -185,28 +148,15 @@ class BearingSupport:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Supports:
-    """Springs on coordinates.
+    """Springs on coordinates."""
 
-    Attributes
-    ----------
-    matrix : array, shape (coordinates, coordinates) or (positions, coordinates, coordinates)
-        Stiffness of the linear ones, N/mm.
-    bearings : tuple of BearingSupport
-        Those with clearance or preload, of the cranks before that of the wheel.
-    cranks : int
-        Cranks that stand on such bearings.
-    """
-
-    matrix: FloatArray = by_drive(2)
-    bearings: tuple[BearingSupport, ...] = ()
-    cranks: int = 0
+    matrix: FloatArray = by_drive(2)  # stiffness of linear ones, N/mm
+    bearings: tuple[BearingSupport, ...] = ()  # with clearance or preload, cranks first
+    cranks: int = 0  # that stand on such bearings
 
     @classmethod
     def of_drive(cls, drive: Drive, geometry: ContactGeometry) -> Supports | None:
-        """Return the supports of a drive; None where nothing yields.
-
-        The contact geometry of one disc is for the tips of shaft pins that a ring ties.
-        """
+        """Return the supports of a drive, None where nothing yields; `geometry` is that of one disc."""
         coordinates = Coordinates.of_drive(drive)
         shaft, wheel, laws = crank_stiffness(drive), wheel_law(drive), crank_laws(drive)
         if shaft is None and wheel is None and not coordinates.ring:
@@ -248,10 +198,7 @@ class Supports:
     def respond(
         self, pose: FloatArray, beside: ComplexArray | None = None, slopes: FloatArray | None = None
     ) -> tuple[FloatArray, FloatArray]:
-        """Return generalised force and tangent at poses, shapes (positions, coordinates) and (…, coordinates, coordinates).
-
-        `beside` and `slopes` are those of `BearingSupport.respond` for every crank, on axis 1.
-        """
+        """Return generalised force and tangent; arguments as for `BearingSupport.respond`, of every crank on axis 1."""
         force, tangent = np.matmul(self.matrix, pose[..., None])[..., 0], self.matrix
         for support, carried, changes in self._each(beside, slopes):
             pushed, stiff = support.respond(pose, carried, changes)
@@ -261,7 +208,7 @@ class Supports:
     def _each(
         self, beside: ComplexArray | None, slopes: FloatArray | None = None
     ) -> Iterator[tuple[BearingSupport, Any, Any]]:
-        """Bearings with what presses those of cranks beside the discs."""
+        """Bearings with the forces beside the discs of those of cranks."""
         for number, support in enumerate(self.bearings):
             carried, changes = (
                 None if each is None or number >= self.cranks else each[:, number] for each in (beside, slopes)
@@ -269,9 +216,7 @@ class Supports:
             yield support, carried, changes
 
     def given(self, pose: FloatArray, beside: ComplexArray) -> ComplexArray | None:
-        """Return the displacement in the two bearings of every crank, x + iy, mm, shape (positions, cranks, 2); None where these
-        are springs alone. `beside` as for `respond`.
-        """
+        """Return displacements in the two bearings of every crank, x + iy, mm, shape (positions, cranks, 2); None for springs."""
         if not self.cranks:
             return None
         each = [support.given(pose, carried) for support, carried, _ in self._each(beside)]
@@ -284,11 +229,7 @@ class Supports:
 
 
 def crank_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the forces on a crank at the planes of the discs by displacements there, N/mm, shape (discs, discs); where discs
-    lean, of its journals (`journals`).
-
-    None where cranks are rigid. Bearings are without clearance, and both sides of preloaded ones carry.
-    """
+    """Return the stiffness of a crank at its journals, N/mm, preloaded bearings carrying on both sides; None of rigid cranks."""
     support = drive.crank.support
     if support is None:
         return None
@@ -300,18 +241,13 @@ def crank_stiffness(drive: Drive) -> FloatArray | None:
 
 
 def journals(drive: Drive) -> tuple[Sequence[float], Sequence[float]]:
-    """Return the planes at which a crank is displaced, mm, and those at which it leans: at every disc, in the order of
-    `Coordinates.journals`.
-    """
+    """Return the planes at which a crank is displaced, mm, and those at which it leans, as `Coordinates.journals` has them."""
     planes = drive.disc.disc_planes
     return planes, planes if drive.contact.slices > 1 else ()
 
 
 def crank_torsion(drive: Drive) -> FloatArray | None:
-    """Return the moments on a crank at the planes of the discs by twists there, N·mm/rad, shape (discs, discs).
-
-    Twists are those against the splined planet, which holds φ_C; None where cranks do not twist.
-    """
+    """Return the stiffness against twists at the discs from the splined planet, N·mm/rad; None where cranks do not twist."""
     support, shaft = drive.crank.support, drive.materials.crankshaft
     if support is None or not support.torsion:
         return None
@@ -325,8 +261,7 @@ def crank_torsion(drive: Drive) -> FloatArray | None:
 def crank_bearing_stiffness(drive: Drive) -> tuple[float, float]:
     """Return the radial stiffness of the two bearings of a crank as given, or of tapered rollers at their preload, N/mm."""
     support = drive.crank.support
-    if support is None:
-        raise AssertionError("cranks are rigid")
+    assert support is not None
     if support.load_constant is None:
         first, second = support.stiffness
         return first, second
@@ -365,13 +300,12 @@ def crank_laws(drive: Drive) -> tuple[SideLaw, ...] | None:
 def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
     """Return the rows of the main bearing about their preload; empty where it is given by its stiffness."""
     bearing = drive.main_bearing
-    rows = () if bearing is None else bearing.bearings
-    if bearing is None or not rows:
+    if bearing is None:
         return ()
-    placed = [row.plane for row in rows if row.contact_angle]
+    placed = [row.plane for row in bearing.bearings if row.contact_angle]
     middle = sum(placed) / max(len(placed), 1)
     found = []
-    for row in rows:
+    for row in bearing.bearings:
         if not row.contact_angle:
             found.append(RollingRow(radial=row.radial_stiffness or 0.0, axial=0.0, pressure_centre=row.plane))
             continue
@@ -392,17 +326,14 @@ def wheel_rows(drive: Drive) -> tuple[RollingRow, ...]:
 
 
 def wheel_law(drive: Drive) -> SideLaw | float | None:
-    """Return how the main bearing holds the wheel radially, tilt held: its stiffness, N/mm, or its law with clearance or
-    preload; None where it is rigid.
-    """
+    """Return the radial stiffness of the main bearing, tilt held, N/mm, or its law with clearance or preload; None if rigid."""
     bearing = drive.main_bearing
     if bearing is None:
         return drive.pin_wheel.support_stiffness
     if rows := wheel_rows(drive):
         return _side_law(drive, rows)
     stiffness = bearing.radial_stiffness or drive.pin_wheel.support_stiffness
-    if stiffness is None:
-        raise AssertionError("a main bearing has a stiffness")
+    assert stiffness is not None
     if bearing.clearance is not None:
         return SideLaw.of_clearance(stiffness, bearing.clearance)
     held = bearing.preload
@@ -410,7 +341,7 @@ def wheel_law(drive: Drive) -> SideLaw | float | None:
 
 
 def _side_law(drive: Drive, rows: Sequence[RollingRow]) -> SideLaw | float:
-    """How rows of the main bearing hold the wheel radially: their stiffness, N/mm, or their law with clearance or preload."""
+    """Radial stiffness of rows of the main bearing, N/mm, or their law with clearance or preload."""
     stiffness = sum(row.radial for row in rows)
     if drive.main_bearing is not None and drive.main_bearing.clearance is not None:
         return SideLaw.of_clearance(stiffness, drive.main_bearing.clearance)
@@ -418,10 +349,7 @@ def _side_law(drive: Drive, rows: Sequence[RollingRow]) -> SideLaw | float:
 
 
 def wheel_axial_stiffness(drive: Drive) -> float | None:
-    """Return the axial stiffness of the main bearing, N/mm, of rows k_zz of all of them about their preload.
-
-    None where it is not known: of rows with clearance just one carries along the axis, beyond an axial play.
-    """
+    """Return the axial stiffness of the main bearing, N/mm; None where it is not known, as of rows with clearance."""
     bearing = drive.main_bearing
     if bearing is None or not bearing.bearings:
         return None if bearing is None else bearing.axial_stiffness
@@ -442,8 +370,7 @@ def _row(
 ) -> RollingRow:
     """A row with a contact angle about its preload, by its axial stiffness there or by its load constant."""
     if preload is None:
-        if axial is None:
-            raise AssertionError("a load constant needs a preload")
+        assert axial is not None
         return RollingRow.of_axial(axial, contact_angle, plane=plane, pitch_radius=pitch_radius, facing=facing)
     force, pressed = axial_preload(power, axial, load_constant, force=preload.force, displacement=preload.displacement)
     stiffness = power * force / pressed if axial is None else axial
@@ -454,16 +381,13 @@ def _row(
 def _crank_shares(drive: Drive) -> FloatArray:
     """Part of a force or couple at each journal that each of the two bearings of a crank carries, shape (journals, 2)."""
     support = drive.crank.support
-    if support is None:
-        raise AssertionError("cranks are rigid")
+    assert support is not None
     planes, slopes = journals(drive)
     return support_parts(planes, support.positions, slopes).T
 
 
 def _bent_by_pose(drive: Drive, geometry: ContactGeometry, crank: int) -> FloatArray:
-    """x and y of each journal of a crank in turn, and of its lean there, relative to the straight line between its bearings, by
-    the coordinates of the drive, shape (2·journals, coordinates).
-    """
+    """`BearingSupport.by_pose` of a crank, relative to the straight line between its bearings."""
     coordinates = Coordinates.of_drive(drive)
     places = coordinates.journals(crank)
     found = np.zeros((places.size, 2, coordinates.size))
@@ -477,10 +401,9 @@ def _bent_by_pose(drive: Drive, geometry: ContactGeometry, crank: int) -> FloatA
 
 
 def _ring_stiffness(drive: Drive, geometry: ContactGeometry) -> FloatArray:
-    """Forces on the ring by its x, y and rotation, shape (3, 3): Σ k vᵀ v over the tips it moves by v."""
+    """Stiffness against x, y and rotation of the ring, Σ k vᵀ v over the tips that it moves by v, shape (3, 3)."""
     beam = shaft_pin_beam(drive)
-    if beam is None:
-        raise AssertionError("a ring ties beams")
+    assert beam is not None
     tips = geometry.tips_by_ring
     return np.asarray(beam.tip_stiffness * (tips.conjugate().T @ tips).real)
 

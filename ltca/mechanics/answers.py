@@ -1,4 +1,4 @@
-"""What the contacts of a disc answer at poses, from the one system of all of them."""
+"""Contacts of a disc at poses as results have them, from the one system of all of them."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
 
 
 def _approaches(at: Linearised, disc: int) -> FloatArray:
-    """Approaches of pairs of coupled bodies, on pins, bores and holes: what other contacts' loads leave of the overlap."""
+    """Approaches of pairs of coupled bodies, on pins, bores and holes: the overlap less deformations by other contacts' loads."""
     system, some = at.system, at.chosen[disc]
     kinds = system.of_kind[disc]
     overlap = np.concatenate([at.overlap[:, 0, kinds[kind]] for kind in range(3)], axis=1)

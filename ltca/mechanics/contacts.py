@@ -1,26 +1,17 @@
 r"""All contacts of a reducer at poses, with everything elastic that couples them: one system for every engine.
 
-A contact is a place and a local law. It approaches by d and, in slices, tilts; its deformation e carries the load f(e), and what
-all loads take of d is
+With approaches d, deformations e, loads f(e), coefficients C of bodies, flexibility S of beams and ring, places x of rollers
+(and leans) and displacements u of pins,
 
-.. math:: e + C f(e) = d(q, x, u), \qquad u = -S L^T f, \qquad T^T f = 0,
+.. math:: e + C f(e) = d(q, x, u), \qquad u = -S L^T f, \qquad T^T f = 0 .
 
-with the pose q, the places x of the rollers between their races (and their leans), the displacements u of the pins, the influence
-coefficients C of the bodies and the flexibility S of beams and ring. T and N are the derivatives of d by x and u, L is N with
-friction. Newton's step solves for all of them at once: with K = ∂f/∂e and W = C + N S Lᵀ
+With the derivatives T and N of d by x and u, L (N with friction), K = ∂f/∂e and W = C + N S Lᵀ, Newton's step is
 
-.. math:: (1 + W K)\, de = G\,dq + T\,dx - r, \qquad r = e - d + C f + N (u + S L^T f),
+.. math:: (1 + W K)\, de = G\,dq + T\,dx - r, \qquad r = e - d + C f + N (u + S L^T f) .
 
-e and u are eliminated contact by contact, then x roller by roller; what is left is a force and a tangent of the pose alone. The
-derivatives of C and of the radii of curvature by the pose are left out, which keeps the tangent symmetric.
-
-A run in time asks for the crank angle as one more coordinate behind the pose, with which the cages turn and discs and wheel go
-along as they nominally do (`by_crank`). Its tangent is Σ k g gᵀ of contacts with their rollers and bodies alone: without what
-forces add as they turn.
-
-Contacts are numbered disc after disc: wheel pins, rollers in the bores, shaft pins in their holes, rollers on the races. Arrays
-have the shape (positions, components, contacts), with the approach and, in slices, the tilt times half the thickness of the disc
-as components.
+Derivatives of C and of radii of curvature by the pose are left out, which keeps the tangent symmetric. Contacts are numbered
+disc after disc: wheel pins, rollers in the bores, shaft pins in their holes, rollers on the races. Arrays have the shape
+(positions, components, contacts); components are the approach and, in slices, the tilt times half the thickness.
 """
 
 from __future__ import annotations
@@ -70,15 +61,13 @@ if TYPE_CHECKING:
 WORKING_MEMORY = 1e8
 """Memory for the largest array of a block of positions, bytes: the linear system of contacts, of which a few are held."""
 CANDIDATE_MARGIN = 0.25
-"""Gap, by the largest overlap of its position, within which an open contact may carry that loads of others move: through bodies
-or displaced pins.
-"""
+"""Gap by the largest overlap of its position within which an open contact may carry as loads of others move it."""
 SETTLED = 1e-7
-"""The same of an answer: loads are corrected to first order, and the error left is of its square."""
+"""Largest correction of a deformation by the largest approach in an answer; the error of loads is of its square."""
 SETTLED_IN_MOTION = 1e-5
-"""The same of a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that these leave."""
+"""The same in a run in time, whose step leaves a hundred times as much as the 1e-11 of loads that follow from it."""
 FAR_OFF = 0.2
-"""What is left of the deformations by the largest approach from which a start is compared with nothing at all."""
+"""Residual of the deformations by the largest approach beyond which a start is compared with none at all."""
 MAX_CORRECTIONS = 60
 TOGETHER = 4
 """Positions that are corrected together though most of them have settled."""
@@ -88,21 +77,15 @@ STEEPEST = 0.3
 KINK = 10.0
 """Slope behind the place of least energy by that before it from which a contact closes between them."""
 LEFT_WEIGHT = 100.0
-"""What is left of the inner unknowns counts so many times: moments of the cranks are balanced more closely than forces."""
+"""Weight of the residual of the inner unknowns: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
-"""Correction that is nothing but round-off of places, mm."""
+"""Round-off of places, mm."""
 LEAST_CHANGE = 1e-13
-"""Change of a load by the largest of its position that is none."""
+"""Least change of a load, by the largest of its position, that counts."""
 
 
 class ContactSystem:
-    """Contacts of all discs of a reducer.
-
-    Parameters
-    ----------
-    model : ltca.equilibrium.reducer.Reducer
-        Discs with their laws and bodies, what displaces pins, and friction.
-    """
+    """Contacts of all discs of a `ltca.equilibrium.reducer.Reducer`."""
 
     def __init__(self, model: Any) -> None:
         self.model, self.coordinates = model, model.coordinates
@@ -159,12 +142,7 @@ class ContactSystem:
         everything: bool = False,
         by_crank: bool = False,
     ) -> Linearised:
-        """Return contacts at poses, found to first order in what is left of the inner unknowns.
-
-        Contacts that others move, far from touching, are left out of the linear system unless `everything` is asked for;
-        `Linearised.leaves_out` tells where one of them is pressed after all, which is looked at here unless `roughly`. With
-        `by_crank` the crank angle is a coordinate behind the pose.
-        """
+        """Return the contacts at poses in one group; arguments as for `in_groups`."""
         groups = self.in_groups(
             angle, pose, start, roughly=roughly, everything=everything, by_crank=by_crank, apart=False
         )
@@ -181,9 +159,13 @@ class ContactSystem:
         by_crank: bool = False,
         apart: bool = True,
     ) -> list[tuple[Indices, Linearised]]:
-        """Return the same in groups, positions whose inner unknowns take longer to settle `apart` behind the others.
+        """Return contacts at poses, to first order in the residual of the inner unknowns, then groups that replace some
+        positions.
 
-        The first group has all positions; those of each further one stand in place of what the groups before have of them.
+        Groups are positions that settle later and are corrected `apart`. Contacts far from touching that others move are left
+        out unless `everything` counts or, if not `roughly`, one of them turns out to be pressed. With `by_crank` the crank
+        angle is a coordinate by which cages turn, discs and wheel move nominally; the tangent then is Σ k g gᵀ, without forces
+        that turn.
         """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
         known = None if start is None else start.known
@@ -197,11 +179,7 @@ class ContactSystem:
     def _settled(
         self, at: Linearised, begin: State | None, apart: bool, history: tuple[FloatArray, ...] = ()
     ) -> list[tuple[Indices, Linearised]]:
-        """Correct the inner unknowns, each position for itself, until they have settled.
-
-        `begin` is what was expected of them, None where it has been compared with nothing at all. Few positions among many that
-        take longer, begin anew or go back on the way are corrected `apart`.
-        """
+        """Correct the inner unknowns of each position until they settle; `begin` is None once compared with no start."""
         every, others = np.arange(at.angle.size), list[tuple[Indices, Linearised]]()
         gone = np.zeros(every.size, dtype=bool)
 
@@ -240,12 +218,12 @@ class ContactSystem:
         return [(every, at), *others]
 
     def _far_off(self, at: Linearised) -> NDArray[np.bool_]:
-        """Positions that what was expected may be farther off than nothing at all."""
+        """Positions whose start may be farther off than none."""
         unsettled = ~at.settled(roughly=True)
         return unsettled & (at.off > FAR_OFF * at.deepest) if self.coupled else unsettled
 
     def _begun(self, at: Linearised, begin: State) -> Linearised:
-        """Begin anew where what was expected is farther off than nothing at all."""
+        """Begin anew where the start is farther off than none."""
         far = self._far_off(at)
         if self.deforms and far.any():
             shifts = None if begin.shifts is None else begin.shifts * 0.0
@@ -258,7 +236,7 @@ class ContactSystem:
         return at
 
     def _begin(self, pose: FloatArray, start: Start | None) -> State:
-        """Inner unknowns to start from; NaN where nothing is known."""
+        """Inner unknowns to start from; NaN where they are not known."""
         rows, rollers = pose.shape[0], self.discs * self.rollers
         place = lean = None
         parameter = approach = None
@@ -282,32 +260,8 @@ class ContactSystem:
 class Linearised:
     """Contacts at poses and near-by inner unknowns, and how everything follows the pose to first order.
 
-    Parameters
-    ----------
-    system : ContactSystem
-        The contacts.
-    angle : array, shape (positions,)
-        φ_C, rad.
-    pose : array, shape (positions, coordinates)
-        q.
-    state : State
-        Inner unknowns.
-    known : KnownPins, optional
-        Pins that cannot touch are left out by.
-    roughly : bool
-        Whether laws that iterate may come as close as a search needs.
-    before : Linearised, optional
-        The same contacts at the same places, where only the inner unknowns have changed.
-    margin : float
-        Gap by the largest overlap within which open contacts that others move are taken.
-    by_crank : bool
-        Whether the crank angle is a coordinate behind the pose.
-
-    Notes
-    -----
-    ``force`` and ``tangent`` are the generalised force of the contacts once the inner unknowns have settled, to first order, and
-    its derivative, shapes (positions, coordinates) and (positions, coordinates, coordinates); ``left`` is the force that the
-    second order may amount to, N, shape (positions,).
+    `before` has the same contacts at the same places; `known` excludes pins that cannot touch, and open contacts are taken
+    within `margin`. ``force`` and ``tangent``, its derivative, are those once the inner unknowns have settled, to first order.
     """
 
     force: FloatArray
@@ -316,13 +270,13 @@ class Linearised:
     """Corrections of places and leans of the chosen rollers, mm, shape (positions, rollers, components)."""
     dx_by_pose: FloatArray
     by_own: list[FloatArray]
-    """How these follow the coordinates of each disc, where nothing else deforms."""
+    """Derivatives of these by the coordinates of each disc, where nothing else deforms."""
     bodies: list[list[BodyFlexibility]]
     members: PinMembers
     off_by: FloatArray
-    """What is left of the deformations, r, mm."""
+    """Residual of the deformations, r, mm."""
     by_slope: BySlope | None = None
-    """What the tangent has beyond that of a search (`ltca.mechanics.full_tangent`)."""
+    """Additions to the tangent of a search (`ltca.mechanics.full_tangent`)."""
 
     def __init__(
         self,
@@ -359,7 +313,7 @@ class Linearised:
         self.before = None
 
     def _placed(self, state: State) -> list[DiscPlaces]:
-        """Places of the contacts of every disc with the pins displaced as the state says."""
+        """Places of the contacts of every disc, pins displaced."""
         system, found = self.system, []
         for disc, (geometry, own) in enumerate(zip(system.geometries, system.columns, strict=True)):
             first, last = disc * system.pins, (disc + 1) * system.pins
@@ -452,7 +406,7 @@ class Linearised:
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
     def stand(self, pose: FloatArray, state: State) -> None:
-        """Put the parts somewhere else while the contacts stay deformed as they are: places and loads follow."""
+        """Move the parts while the contacts stay deformed as they are: places and loads follow."""
         self.pose, self.known = pose, None
         self.discs = self._placed(state)
         self._carry(state)
@@ -583,7 +537,7 @@ class Linearised:
 
     @cached_property
     def pressing(self) -> list[Pressing]:
-        """What the chosen contacts of every disc press its coordinates with."""
+        """Generalised forces of the chosen contacts of every disc."""
         self.chosen_load = self.of_chosen(self.load)
         self.chosen_stiffness = self.of_chosen(self.stiffness.swapaxes(0, 1)).swapaxes(0, 1)
         return [pressing_of(self, disc) for disc in range(self.system.discs)]
@@ -613,7 +567,7 @@ class Linearised:
 
     @property
     def _left_of_pins(self) -> FloatArray:
-        """What pins that move along curved contacts alter of gaps in the second order, times the stiffness, N."""
+        """Loads by the second-order change of gaps as pins move along curved contacts, N."""
         found = np.zeros(self.angle.size)
         assert self.shifts is not None
         assert self.shifts_after is not None
@@ -625,7 +579,7 @@ class Linearised:
         return found
 
     def bodies_between(self) -> list[list[BodyFlexibility]]:
-        """What bodies yield between the chosen contacts where these are, by disc and component."""
+        """Flexibility of the bodies between the chosen contacts, by disc and component."""
         return [
             []
             if model.coefficients is None
@@ -667,7 +621,7 @@ class Linearised:
 
     @property
     def _closed(self) -> FloatArray:
-        """How deep the correction presses what is open, mm: a roller is pressed where its whole play is."""
+        """Depth to which the correction presses open contacts, mm; for a roller its whole play counts."""
         after = self.deformation[:, 0].copy()
         if not self.held:  # where pins are held, what they will press is found by those that are not
             after += self.moved_by_pins[:, 0]
@@ -679,16 +633,14 @@ class Linearised:
 
     @cached_property
     def moved_by_pins(self) -> FloatArray:
-        """What approaches, and tilts in slices, grow by as displaced pins go where the loads press them, mm, shape (positions,
-        components, contacts).
-        """
+        """Change of approaches and tilts as pins go where loads press them, mm, shape (positions, components, contacts)."""
         if self.shifts is None or self.shifts_after is None:
             return np.zeros(self.overlap.shape)
         return self.members.approaches(self.shifts_after - self.shifts)
 
     @property
     def onward(self) -> Start:
-        """Where the contacts of a position start that is nearby in pose and crank angle: no pin is left out."""
+        """Start for a position that is nearby in pose and crank angle: no pin is left out."""
         motions = [each.flank for each in self.discs]
         return Start(
             parameter=beside([motion.parameter for motion in motions]),
@@ -701,9 +653,7 @@ class Linearised:
         )
 
     def pin_loads(self, disc: int) -> FloatArray:
-        """Return loads of wheel pins and shaft pins, and in slices their moments by half the thickness of the disc, N, shape
-        (positions, components, pairs).
-        """
+        """Return loads of wheel pins and shaft pins, N, and in slices moments by `half`, shape (positions, components, pairs)."""
         pins, _, holes, _ = self.system.of_kind[disc]
         return np.concatenate((self.corrected_load[..., pins], self.corrected_load[..., holes]), axis=-1)
 
@@ -713,7 +663,7 @@ class Linearised:
         return _by_crank(self.corrected_load[:, 0, bores] * at.outward, at.bores.arm.shape[1])
 
     def bearing_moments(self, disc: int) -> ComplexArray:
-        """Return what every crank bearing presses the lean of a disc with, in slices, N·mm, shape (positions, cranks)."""
+        """Return the generalised force of every crank bearing on the lean of a disc, N·mm, shape (positions, cranks)."""
         at, bores = self.discs[disc], self.system.of_kind[disc][1]
         return _by_crank(self.half * self.corrected_load[:, 1, bores] * at.rays.direction, at.bores.arm.shape[1])
 
@@ -728,7 +678,7 @@ class Linearised:
         return np.stack([one for one in each if one is not None], axis=1)
 
     def body_places(self, disc: int) -> BodyPlaces:
-        """Where the contacts of a disc lie on its body."""
+        """Places of the contacts of a disc on its body."""
         at = self.discs[disc]
         place = at.geometry.placement
         turn, holes = at.pose[:, DISC_ROTATION, None], at.holes.gradient
@@ -772,7 +722,7 @@ class Linearised:
         )
 
     def of_rows(self, system: ContactSystem, rows: Indices) -> Linearised:
-        """Return some of the contacts as those of another system, that of these positions."""
+        """Return some positions as those of another system."""
         angle, pose, state, known = take_positions((self.angle, self.pose, self.here, self.known), rows)
         return Linearised(
             system, angle, pose, state, known, roughly=self.roughly, margin=self.margin, by_crank=self.by_crank
@@ -789,7 +739,7 @@ class Linearised:
         return self._state()
 
     def _state(self, fraction: FloatArray | None = None) -> State:
-        """Inner unknowns after the correction."""
+        """Inner unknowns after the correction, or a fraction of it."""
         system, approach = self.system, None
         if system.deforms:
             approach = self.after
@@ -824,7 +774,7 @@ class Linearised:
 
     @cached_property
     def lean_after(self) -> FloatArray:
-        """Their leans by half the thickness of the disc, mm."""
+        """Leans of the rollers after the correction, by half the thickness of the disc, mm."""
         return self.lean + self.of_all_rollers(self.dx)[..., 1] if self.system.components > 1 else self.lean
 
     def slices_after(self, disc: int) -> list[SlicedContact]:
@@ -841,7 +791,7 @@ class Linearised:
 
     @cached_property
     def shifts_after(self) -> ComplexArray | None:
-        """Displacements of the pins after the correction: those that the loads press."""
+        """Displacements of the pins under the corrected loads."""
         pins = self.system.model.pins
         if pins is None:
             return None
@@ -850,16 +800,15 @@ class Linearised:
 
     @cached_property
     def corrected_load(self) -> FloatArray:
-        """Loads of all contacts, to first order in what is left of the inner unknowns."""
+        """Loads of all contacts, to first order in the residual of the inner unknowns."""
         load = self.load + self.of_all(self.change)
         return np.where(load[:, :1] > 0.0, load, 0.0)
 
     def corrected(self, part: FloatArray, leave: Callable[[NDArray[np.bool_]], bool] | None = None) -> Linearised:
-        """Return the contacts at the same poses with the inner unknowns corrected of those positions whose part is not zero.
+        """Return the contacts with inner unknowns corrected at positions whose `part` is not zero.
 
-        Deformations are found for pins that stand where they stand, and gaps taken as linear in what displaces these, a convex
-        problem; then the pins are put where the loads press them, or that part of the way there. `leave` takes positions
-        away that go back on the way, where they are few, and tells whether it did.
+        Deformations settle at pins that stand, gaps taken as linear; then pins move by `part` to where loads press them.
+        `leave` takes away positions that go back, where they are few.
         """
         moves = part > 0.0
         at = self._stepped(moves, None if self.shifts is not None else leave)
@@ -937,7 +886,7 @@ class Linearised:
 
     @cached_property
     def yielding(self) -> list[list[FloatArray]]:
-        """What the bodies take of the approaches on pins, bores and holes, and of their tilts, by disc and component."""
+        """Deformations of the bodies at pins, bores and holes by disc and component."""
         found: list[list[FloatArray]] = []
         for disc, bodies in enumerate(self.bodies):
             pins, _, holes, _ = self.system.of_kind[disc]
@@ -1015,7 +964,7 @@ class Linearised:
 
 
 def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
-    """Laws of all discs in the plane with their contacts: those that read one table are one law."""
+    """Laws of all discs in the plane with their contacts, those of one table as one law."""
     groups: list[tuple[Any, slice | Indices]] = []
     lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
     for laws, kinds in zip(system.laws, system.of_kind, strict=True):
@@ -1035,7 +984,7 @@ def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
 
 
 def _radii(system: ContactSystem) -> FloatArray:
-    """Effective radii of all contacts, mm, shape (1 or positions, contacts); those of wheel pins are not known yet."""
+    """Effective radii of all contacts, mm, shape (1 or positions, contacts); 1 of wheel pins."""
     every = [(laws.outer_radius, laws.hole_radius, laws.inner_radius) for laws in system.laws]
     rows = max(np.atleast_2d(each).shape[0] for radii in every for each in radii)
     found = np.ones((rows, system.contacts))

@@ -1,4 +1,4 @@
-"""Contacts on pins that beams and the ring of the wheel displace: how they follow the displacements, and what they press."""
+"""Contacts on pins that beams and the ring of the wheel displace."""
 
 from __future__ import annotations
 
@@ -17,16 +17,7 @@ from ltca.mechanics.places import Indices
 
 
 class PinMembers:
-    """Wheel pins and shaft pins of all discs under their contacts.
-
-    Displacements of wheel pins are those in the turning wheel. A pin moves against a disc as the disc moves the other way against
-    it, so that the derivatives N are those by the place of the disc, turned round.
-
-    Parameters
-    ----------
-    at : ltca.mechanics.contacts.Linearised
-        The contacts at poses.
-    """
+    """Wheel pins and shaft pins of all discs under their contacts; wheel pins are displaced in the frame of the turning wheel."""
 
     def __init__(self, at: Any) -> None:
         # Not a circle of references: what a search has evaluated goes as soon as nobody asks for it.
@@ -53,9 +44,8 @@ class PinMembers:
                 self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
 
     def forces(self, load: FloatArray, aside: FloatArray | None = None, *, changes: bool = False) -> ComplexArray:
-        """Return Lᵀ f of loads of all contacts, by row of the displacements, shape (positions, rows, pairs), with the friction of
-        contacts that stick unless these are `changes` of loads, and what loads press `aside` of the normals as they turn, shape
-        (positions, components, discs, pairs).
+        """Return Lᵀ f of loads of all contacts, shape (positions, rows, pairs); friction of contacts that stick counts unless
+        these are `changes`, and forces `aside` of the normals, shape (positions, components, discs, pairs), are added.
         """
         system, forces, moments = self.at.system, [], []
         for disc, kinds in enumerate(system.of_kind):
@@ -87,12 +77,12 @@ class PinMembers:
         return found
 
     def unsettled(self, shifts: ComplexArray) -> ComplexArray:
-        """Return how far pins stand from where the loads press them, u + S Lᵀ f, by row of the displacements."""
+        """Return u + S Lᵀ f, how far pins stand from where the loads press them, mm."""
         self._left: ComplexArray = np.asarray(shifts + self.at.system.model.pins.under(self.forces(self.at.load)))
         return self._left
 
     def slips(self) -> FloatArray:
-        """Return what pins have still to slip along the chosen contacts, as `turned_loads` has them."""
+        """Return the remaining slips of pins along the chosen contacts, mm, in the order of `turned_loads`."""
         found, at, system = [], self.at, self.at.system
         for disc, (along, own) in enumerate(zip(self.along, at.chosen, strict=True)):
             some = np.concatenate((own[0], system.pins + own[2]), axis=1)
@@ -103,7 +93,7 @@ class PinMembers:
         return np.concatenate(found, axis=2)
 
     def _chosen(self) -> None:
-        """Where the contacts on pins stand among the chosen, and on which pins and discs."""
+        """Find the contacts on pins among the chosen ones, their pins and discs."""
         at, system = self.at, self.at.system
         places, pairs, discs = [], [], []
         for disc in range(system.discs):
@@ -124,12 +114,10 @@ class PinMembers:
         return found
 
     def turned_loads(self, size: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return what loads on pins that move along their contacts resist with, the slip by the pose, and by how much loads turn
-        with the pose against the pins.
+        """Return stiffnesses F κ (in slices M κ between place and lean) of loads against pins that move along their contacts,
+        slips by the pose, and loads times the angle by which the wheel turns against the disc.
 
-        They are entries of the linear system behind the chosen contacts: stiffnesses F κ and, in slices, M κ between place and
-        lean, shape (1 or 3, positions, entries), slips, shape (positions, components, entries, coordinates), and loads times
-        the angle by which the wheel turns against the disc, of that shape: wheel pins are displaced in the turning wheel.
+        Shapes are (1 or 3, positions, entries) and twice (positions, components, entries, coordinates).
         """
         at, system = self.at, self.at.system
         rows, each = at.pose.shape[0], []
@@ -165,9 +153,7 @@ class PinMembers:
         return np.concatenate(each, axis=2), slip, turn
 
     def add_flexibility(self, whole: FloatArray) -> None:
-        """Add N S Lᵀ to W, in place: of the chosen contacts, or of those on pins alone, and behind these of
-        what slips along them (`turned_loads`).
-        """
+        """Add N S Lᵀ to W, in place: of the chosen contacts, or of those on pins alone, then of their slips (`turned_loads`)."""
         at, system = self.at, self.at.system
         held = system.model.pins
         assert held is not None
@@ -210,7 +196,7 @@ class PinMembers:
     def _add_beams(
         self, whole: FloatArray, place: Indices, by: list[list[ComplexArray]], onto: list[list[ComplexArray]]
     ) -> None:
-        """Add what contacts on a pin are moved by under loads on the same pin, through its beam."""
+        """Add the approaches of contacts on a pin by loads on the same pin, through its beam."""
         discs, beams, count = self.at.system.discs, self.at.system.model.pins.beams, self.count
         number = np.full((self.at.angle.size, discs, beams.shape[-3]), -1)
         number[self.at.row, self.disc, self.pair] = np.arange(count)
@@ -230,13 +216,7 @@ class PinMembers:
 
 
 def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Columns solved position by position.
-
-    Raises
-    ------
-    ConvergenceError
-        When loads that turn with what they press make a system singular.
-    """
+    """Solve a linear system position by position; ConvergenceError where loads that turn make one singular."""
     try:
         return np.asarray(np.linalg.solve(matrix, right), dtype=float)
     except np.linalg.LinAlgError:

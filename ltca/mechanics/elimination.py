@@ -1,6 +1,4 @@
-"""Elimination of the inner unknowns from the equations of all contacts at poses: deformations, displacements of pins, and places
-of rollers.
-"""
+"""Elimination of deformations, displacements of pins and places of rollers from the equations of all contacts."""
 
 from __future__ import annotations
 
@@ -15,34 +13,31 @@ from ltca.mechanics.places import by_rows
 from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gradient_with_crank, turn_with_cages
 
 ROUGHLY_SETTLED = 0.02
-"""Largest correction of a deformation, by the largest approach, with which a step of the pose is judged."""
+"""Largest correction of a deformation, by the largest approach, at which a step of the pose is judged."""
 LEAST_ROOM = 1e-7
-"""Correction of a roller that is always allowed, mm: one that is hardly pressed would go on by less for ever."""
+"""Correction of a roller that is always allowed, mm."""
 LEAST_TURNING = 1e-9
-"""Stiffness against leaning by that of the place and the square of half the width: what touches at one end alone turns freely."""
+"""Least stiffness of a roller against leaning by that of its place and the square of half the width."""
 
 
 class Eliminated(NamedTuple):
-    """Force and tangent of the pose with everything else eliminated, corrections of places and deformations, how these follow the
-    pose, and what loads on displaced pins press aside of the normals as they turn, by the pose and, last, at it.
-    """
+    """Force and tangent of the pose with everything else eliminated."""
 
     force: FloatArray
     tangent: FloatArray
-    dx: FloatArray
+    dx: FloatArray  # corrections of places and leans of rollers, mm
     dx_by_pose: FloatArray
-    de: FloatArray
+    de: FloatArray  # corrections of deformations, mm
     de_by_pose: FloatArray
-    aside: FloatArray | None
+    aside: FloatArray | None  # pressed across the normals of displaced pins, by the pose and, last, at it
 
 
 def eliminate_rollers(at: Any) -> None:
-    """Force and tangent where nothing deforms but the contacts, in the plane: each roller is condensed by itself.
+    """Condense each roller by itself where nothing deforms but the contacts, in the plane (Eq. 66, 70–72).
 
     With the stiffnesses k of its two contacts, the cosine c between ray and normal n in the bore, and the load F there, which
-    turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a
-    crank are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ). Equations of the paper: balance of
-    the rollers (Eq. 66) and of the disc (Eq. 70–72).
+    turns by its place as s (n across the ray), a roller yields along its ray with k_i + c² k_o + F s²/l. The rollers of a crank
+    are one spring then between bore and race, Σ a n nᵀ + b t tᵀ + m (n tᵀ + t nᵀ).
     """
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     load, stiffness = at.load[:, 0], at.stiffness[0]
@@ -103,7 +98,7 @@ def eliminate_rollers(at: Any) -> None:
 
 
 def eliminate_by_disc(at: Any) -> None:
-    """The same where nothing deforms but the contacts: disc by disc, roller by roller; displaced pins as if at rest."""
+    """Condense rollers disc by disc where nothing deforms but the contacts; displaced pins count as if at rest."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     at.force, at.tangent = np.zeros((rows, size)), np.zeros((rows, size, size))
     dx, at.by_own = [], []
@@ -148,14 +143,14 @@ def eliminate_by_disc(at: Any) -> None:
 
 
 def _moved_aside(at: Any, aside: FloatArray) -> FloatArray:
-    """What loads that turn with displaced pins press these aside takes of the deformations of the chosen contacts."""
+    """Deformations of the chosen contacts as displaced pins yield to forces aside of the normals."""
     force = at.members.forces(np.zeros(at.load.shape), aside[..., -1], changes=True)
     moved: FloatArray = at.of_chosen(at.members.approaches(at.system.model.pins.under(force)))
     return moved
 
 
 def eliminate_coupled(at: Any) -> None:
-    """The same where bodies deform under the loads of all contacts, or where beams and a ring displace pins."""
+    """Eliminate where bodies deform under the loads of all contacts, or beams and a ring displace pins."""
     _find_bodies(at)
     every = assembled(at)
     if at.shifts is not None:
@@ -180,7 +175,7 @@ def eliminate_coupled(at: Any) -> None:
 
 
 def _on_pins(at: Any, part: Pressing) -> Pressing:
-    """What contacts on pins press alone."""
+    """The part of contacts on pins."""
     some, chosen = at.members.place, {}
     for name in ("g", "force_map", "load"):
         chosen[name] = getattr(part, name)[:, :, some]
@@ -198,7 +193,7 @@ def _on_pins(at: Any, part: Pressing) -> Pressing:
 
 
 def _beside_rollers(at: Any, found: Eliminated) -> None:
-    """Add what contacts on displaced pins press and deform to what rollers do."""
+    """Add forces and deformations of contacts on displaced pins to those of rollers."""
     some = at.members.place
     at.force, at.tangent = at.force + found.force, at.tangent + found.tangent
     at.de[:, :, some] = found.de
@@ -214,7 +209,7 @@ def _beside_rollers(at: Any, found: Eliminated) -> None:
 
 
 def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
-    """What is left of the deformations where it matters, as lengths."""
+    """Find the residual of the deformations where it matters, mm."""
     stiffness, (bores, races) = every.stiffness, every.rolls
     at.off_by = at.of_all(left)
     wanted = np.abs(left).sum(axis=1)
@@ -233,10 +228,7 @@ def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
 
 
 def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, turning: bool) -> Eliminated:
-    """The same where loads deform more than their own contacts: force and tangent of the pose.
-
-    Without `turning` loads that turn with displaced pins count where they hold these back alone.
-    """
+    """Force and tangent of the pose; unless `turning`, loads that turn with displaced pins count only where they hold these."""
     system, g, force_map, stiffness = at.system, part.g, part.force_map, part.stiffness
     presses, unbalanced, placed, own_bend = part.presses, part.unbalanced, part.placed, part.own_bend
     force, tangent = part.force, part.tangent
@@ -339,9 +331,7 @@ def _is_near(at: Any, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_
 
 
 def _bounded(at: Any, dx: FloatArray) -> FloatArray:
-    """Corrections of places and leans that go no farther than half of what is pressed together: beyond, other slices meet
-    than the slopes know of.
-    """
+    """Corrections of places and leans, at most half of what is pressed together: beyond, other slices meet."""
     if at.system.components == 1 or not dx.size:
         return dx
     each = [0.5 * (places.room + at.half * np.abs(places.at_race - places.at_bore)) for places in at.discs]
@@ -352,9 +342,7 @@ def _bounded(at: Any, dx: FloatArray) -> FloatArray:
 
 
 def _flexibility(at: Any, part: Pressing) -> tuple[FloatArray, FloatArray]:
-    """W among contacts and of what slips on displaced pins, shape (positions, components, entries, components, entries), and what
-    is left of the deformations of the chosen contacts, r.
-    """
+    """W of contacts and slips on displaced pins, shape (positions, components, entries, components, entries), and r, mm."""
     system = at.system
     rows, components, count = part.load.shape
     members = None if at.shifts is None else at.members
@@ -379,7 +367,7 @@ def _flexibility(at: Any, part: Pressing) -> tuple[FloatArray, FloatArray]:
 
 
 def _find_bodies(at: Any) -> None:
-    """Find what bodies yield between the chosen contacts: what was found before, where neither places nor choice changed."""
+    """Find the flexibility of bodies between the chosen contacts, unless places and choice are those of before."""
     before = at.before
     if before is not None and all(
         first is second or np.array_equal(first, second)
@@ -401,7 +389,7 @@ def loads_of(stiffness: FloatArray, moved: FloatArray) -> FloatArray:
 
 
 def _filled(stiffness: FloatArray, count: int) -> FloatArray:
-    """Stiffnesses with zeros for the parts that they do not have."""
+    """Stiffnesses filled up with zeros."""
     if stiffness.shape[0] == count:
         return stiffness
     return np.concatenate((stiffness, np.zeros((count - stiffness.shape[0], *stiffness.shape[1:]))))
@@ -418,13 +406,13 @@ def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
 
 
 def _hold_turning(blocks: FloatArray) -> None:
-    """Let rollers that touch at one end alone turn about it against a little, in place."""
+    """Hold rollers that touch at one end alone a little against turning about it, in place."""
     if blocks.shape[-1] > 1:
         blocks[..., 1, 1] += LEAST_TURNING * blocks[..., 0, 0]
 
 
 def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:
-    """Columns solved roller by roller; what nothing holds stays where it is."""
+    """Solve roller by roller; parts that nothing holds stay where they are."""
     if blocks.shape[-1] == 1:
         held = blocks[..., 0, 0]
         return right / np.where(held != 0.0, held, np.inf)[..., None, None]

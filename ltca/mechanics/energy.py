@@ -1,18 +1,4 @@
-r"""Energy that contacts store at a pose, with the bodies and pins behind them, and the work that goes with its change beside that
-of their forces.
-
-With the near-field approaches ε of all contacts, their loads F and the coefficients C of the bodies between them,
-
-.. math:: U = \sum_i \int_0^{\epsilon_i} F\,d\epsilon + \tfrac12 F^T C F, \qquad \delta = \epsilon + C F .
-
-Contacts move over the bodies: to other radii of curvature ρ, and to other places, between which C differs. Forces act along the
-normals alone, so that along a motion
-
-.. math:: dU = F^T d\delta + \sum_i \frac{\partial U_i}{\partial\varrho_i} d\varrho_i - \tfrac12 F^T\,dC\,F ,
-
-the derivative by ρ being that of the law at a held ε. Contacts that do not feel each other have no C. Of contacts in slices ε are
-approaches and tilts, F loads and moments, and a law stores what its slices do together.
-"""
+"""Energy of contacts at a pose, with bodies and pins behind, and works beside those of forces (``docs/theory/motion.md``)."""
 
 from __future__ import annotations
 
@@ -32,25 +18,13 @@ RADIUS_STEP = 1e-4
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredEnergy:
-    """Energy of the contacts of a disc.
+    """Energy of the contacts of a disc."""
 
-    Attributes
-    ----------
-    energy : array, shape (positions,)
-        U, N·mm.
-    radius, by_radius : array, shape (positions, z_P)
-        ρ of wheel pins and flank, mm, and ∂U/∂ρ, N.
-    load : array, shape (positions, contacts)
-        F, N.
-    coefficients : array, shape (positions, contacts, contacts)
-        C, mm/N; of no contact where they do not feel each other.
-    """
-
-    energy: FloatArray
-    radius: FloatArray
-    by_radius: FloatArray
-    load: FloatArray
-    coefficients: FloatArray
+    energy: FloatArray  # U, N·mm, shape (positions,)
+    radius: FloatArray  # ρ of wheel pins and flank, mm, shape (positions, z_P)
+    by_radius: FloatArray  # ∂U/∂ρ, N
+    load: FloatArray  # F, N, shape (positions, contacts); of no contact where they do not feel each other
+    coefficients: FloatArray  # C, mm/N, shape (positions, contacts, contacts)
 
     def work_to(self, other: StoredEnergy) -> tuple[FloatArray, FloatArray]:
         """Return ∫∂U/∂ρ dρ and −½∫Fᵀ dC F on the way to other poses nearby, by trapezoids, N·mm, shape (positions,)."""
@@ -61,12 +35,12 @@ class StoredEnergy:
 
 
 def stored_by_disc(at: Linearised) -> tuple[StoredEnergy, ...]:
-    """Return what the contacts of every disc store, with the bodies between them."""
+    """Return the energy of the contacts of every disc, with the bodies between them."""
     return tuple(_of_disc(at, disc) for disc in range(at.system.discs))
 
 
 def stored_by_pins(at: Linearised) -> FloatArray:
-    """Return what beams and ring store that hold pins, ½ Σ F·S F, N·mm, shape (positions,)."""
+    """Return the energy of beams and ring that hold pins, ½ Σ F·S F, N·mm, shape (positions,)."""
     pins = at.system.model.pins
     if at.shifts is None or pins is None:
         return np.zeros(at.pose.shape[0])

@@ -1,6 +1,4 @@
-"""The whole tangent of the contacts: with the derivatives of laws and bodies by the places of the contacts, which a search leaves
-out.
-"""
+"""The whole tangent of the contacts, with the derivatives of laws and bodies by the places of the contacts."""
 
 from __future__ import annotations
 
@@ -15,22 +13,13 @@ from ltca.mechanics.pressing import BySlope
 STEP = 1e-3
 """Step of the places, mm: curvatures change over millimetres, and round-off of places is 1e-11 of it."""
 PASSES = 3
-"""Times that displaced pins are taken along: each leaves a thousandth of what the one before did."""
+"""Passes in which displaced pins are taken along: each leaves a thousandth."""
 
 
 def with_whole_tangent(at: Linearised, lever: FloatArray) -> Linearised:
-    r"""Return contacts that have settled with the derivative of their force by the pose, nothing left out.
+    """Return settled contacts with the whole derivative of their force by the pose; `lever` is that of coordinates, mm.
 
-    Beside the tangent of a search, with f(e, ρ) the load of a law, ρ the radius of curvature where it presses and C what the
-    bodies yield, a contact takes :math:`\partial_q C\, f` more, and its load goes by :math:`\partial_\rho f\, \rho'` without its
-    deformation.
-
-    Parameters
-    ----------
-    at : Linearised
-        Contacts, found exactly.
-    lever : array, shape (coordinates,) or (positions, coordinates)
-        Lengths by which coordinates are displacements, mm.
+    Beside the tangent of a search contacts take ∂C/∂q f more, and their loads go by ∂f/∂ρ ρ′.
     """
     found = copy(at)
     for _ in range(1 if at.shifts is None else PASSES):
@@ -40,7 +29,7 @@ def with_whole_tangent(at: Linearised, lever: FloatArray) -> Linearised:
 
 
 def _slopes(at: Linearised, shifts_by_pose: ComplexArray | None, lever: FloatArray) -> BySlope:
-    """Differences of loads and of what bodies take between places a step to either side, coordinate by coordinate."""
+    """Differences of loads and of deformations of bodies between places a step to either side, by coordinate."""
     rows, size = at.pose.shape
     load, taken = np.zeros((2, rows, at.system.components, at.count, size))
     pressing = at.of_chosen(at.corrected_load)

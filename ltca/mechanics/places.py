@@ -54,19 +54,15 @@ class DiscPlaces:
 
     @property
     def room(self) -> FloatArray:
-        """How far rollers are pressed together, or stand apart, where bore and race do not tilt against each other, mm."""
+        """Overlap or play of rollers where bore and race do not tilt against each other, mm."""
         return np.abs(self.total)
 
     @cached_property
     def nominal(self) -> FloatArray:
         """Nominal motion of disc and wheel by the crank angle, mm and rad, shape (positions, coordinates, 1)."""
-        place, found = self.geometry.placement, np.zeros((*self.pose.shape, 1))
-        velocity = self.races.velocity
-        found[:, X, 0], found[:, Y, 0], found[:, WHEEL_ANGLE, 0] = (
-            velocity.real,
-            velocity.imag,
-            1.0 / place.reduction_ratio,
-        )
+        found, velocity = np.zeros((*self.pose.shape, 1)), self.races.velocity
+        found[:, X, 0], found[:, Y, 0] = velocity.real, velocity.imag
+        found[:, WHEEL_ANGLE, 0] = 1.0 / self.geometry.placement.reduction_ratio
         return found
 
     @cached_property
@@ -90,9 +86,7 @@ class DiscPlaces:
 
 
 class State(NamedTuple):
-    """Inner unknowns at poses: contact parameters, places and leans of rollers, deformations, displacements of pins, and what
-    laws start from.
-    """
+    """Inner unknowns at poses: contact parameters, rollers, deformations, displacements of pins, starts of laws."""
 
     parameter: FloatArray | None
     place: FloatArray
@@ -104,7 +98,7 @@ class State(NamedTuple):
 
 
 def mixed(first: State, second: State, rows: NDArray[np.bool_]) -> State:
-    """Inner unknowns of the first but for some positions, which have those of the second."""
+    """Inner unknowns of the first, those of the second at some positions."""
 
     def of_both(mine: Any, other: Any) -> Any:
         if mine is None or other is None:
@@ -134,9 +128,7 @@ def with_crank(pose: FloatArray, angle: FloatArray) -> FloatArray:
 
 
 def places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slice], list[list[slice]]]:
-    """Return where chosen contacts of each disc and kind stand among all chosen, the rollers of each disc among these, and the
-    contacts of each kind among those of their disc.
-    """
+    """Return places of the contacts of each disc and kind among all chosen, of its rollers, and within the disc."""
     ends = np.cumsum([0, *(some.shape[1] for own in chosen for some in own)])
     at = [[slice(ends[4 * disc + kind], ends[4 * disc + kind + 1]) for kind in range(4)] for disc in range(len(chosen))]
     ends = np.cumsum([0, *(own[1].shape[1] for own in chosen)])
@@ -145,7 +137,7 @@ def places_of(chosen: list[list[Indices]]) -> tuple[list[list[slice]], list[slic
 
 
 def padded(mask: NDArray[np.bool_]) -> Indices:
-    """Numbers of what is chosen in each row, ascending, padded to the fullest row with others."""
+    """Numbers of the chosen entries of each row, ascending, padded to the fullest row with others."""
     count = int(np.max(np.count_nonzero(mask, axis=1), initial=0))
     if count == mask.shape[1]:
         return np.broadcast_to(np.arange(count), mask.shape)

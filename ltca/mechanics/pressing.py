@@ -1,4 +1,4 @@
-"""What contacts press the coordinates of discs with, rollers where they stand."""
+"""Generalised forces of contacts on the coordinates of discs, rollers where they stand."""
 
 from __future__ import annotations
 
@@ -14,59 +14,31 @@ from ltca.mechanics.places import DiscPlaces, Indices
 
 
 class Pressing(NamedTuple):
-    """What chosen contacts press coordinates with.
+    """Generalised forces of chosen contacts, rollers where they stand."""
 
-    Attributes
-    ----------
-    g : array, shape (positions, components, chosen, coordinates)
-        ∂d/∂q.
-    force_map : array, of the same shape
-        The same with friction along the tangents.
-    load : array, shape (positions, components, chosen)
-        f.
-    stiffness : array, shape (1 or 3, positions, chosen)
-        K.
-    presses : tuple of array, shape (positions, components, rollers)
-        How places and leans of rollers press their contacts in bores and on races.
-    unbalanced : array, shape (positions, rollers, components)
-        What presses the rollers' places.
-    placed : array, shape (positions, rollers, components, coordinates)
-        How that follows the coordinates where contacts do not.
-    own_bend : array, shape (positions, rollers)
-        How it follows the places likewise.
-    force, tangent : array, shapes (positions, coordinates) and (positions, coordinates, coordinates)
-        What presses the coordinates, and how that follows them where loads do not.
-    rolls : tuple of array of int
-        Where the contacts of the rollers stand among these, in bores and on races.
-    which : array of int, or slice
-        Numbers of the contacts among the chosen ones.
-    """
-
-    g: FloatArray
-    force_map: FloatArray
-    load: FloatArray
-    stiffness: FloatArray
-    presses: tuple[FloatArray, FloatArray]
-    unbalanced: FloatArray
-    placed: FloatArray
-    own_bend: FloatArray
+    g: FloatArray  # ∂d/∂q, shape (positions, components, chosen, coordinates)
+    force_map: FloatArray  # the same with friction along the tangents
+    load: FloatArray  # f, shape (positions, components, chosen)
+    stiffness: FloatArray  # K, shape (1 or 3, positions, chosen)
+    presses: tuple[FloatArray, FloatArray]  # by rollers in bores and on races, shape (positions, components, rollers)
+    unbalanced: FloatArray  # forces on the rollers' places, shape (positions, rollers, components)
+    placed: FloatArray  # their derivatives by the coordinates, loads held, with these behind
+    own_bend: FloatArray  # and by the places, shape (positions, rollers)
     force: FloatArray
-    tangent: FloatArray
-    rolls: tuple[Indices, Indices]
-    which: Indices | slice = slice(None)
+    tangent: FloatArray  # derivative of the force, loads held
+    rolls: tuple[Indices, Indices]  # numbers of the rollers' contacts in bores and on races
+    which: Indices | slice = slice(None)  # numbers of the contacts among the chosen ones
 
 
 class BySlope(NamedTuple):
-    """How loads of the chosen contacts, and what bodies take of their approaches, follow the pose while deformations and loads
-    stay, shape (positions, components, chosen, coordinates).
-    """
+    """Derivatives by the pose, deformations held, shape (positions, components, chosen, coordinates)."""
 
-    load: FloatArray
-    taken: FloatArray
+    load: FloatArray  # of the loads of the chosen contacts
+    taken: FloatArray  # of deformations of bodies, loads held
 
 
 def pressing_of(at: Any, disc: int) -> Pressing:
-    """What the chosen contacts of a disc press its own coordinates with, rollers where they stand (Eq. 66, 70–72)."""
+    """Generalised forces of the chosen contacts of a disc, rollers where they stand (Eq. 66, 70–72)."""
     places, some, (_, bores, _, races) = at.discs[disc], at.chosen[disc], at.local[disc]
     own = slice(at.at[disc][0].start, at.at[disc][3].stop)
     g, across = _gradients(at, disc)
@@ -87,31 +59,30 @@ def pressing_of(at: Any, disc: int) -> Pressing:
         turn_with_cages(tangent, load[:, 0, bores] * at.system.cage_speed, across)
     else:
         tangent = bends(at, disc) + np.matmul(across.swapaxes(1, 2), bend[..., None] * across)
-    found = Pressing(
+    force_map = _rub(at, disc, g)
+    force = np.matmul(force_map.reshape(rows, -1, size).swapaxes(1, 2), load.reshape(rows, -1, 1))[..., 0]
+    if at.sticking:
+        by_slip, slip, held = at.sticking[disc]
+        force += np.einsum("bpj,bp->bj", slip, held)
+        tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
+    return Pressing(
         g=g,
-        force_map=_rub(at, disc, g),
+        force_map=force_map,
         load=load,
         stiffness=stiffness,
         presses=(outward, inward),
         unbalanced=(outward * load[:, :, bores] + inward * load[:, :, races]).swapaxes(1, 2),
         placed=placed,
         own_bend=bend * slant**2,
-        force=np.zeros((rows, size)),
+        force=force,
         tangent=tangent,
         rolls=(np.arange(bores.start, bores.stop), np.arange(races.start, races.stop)),
     )
-    flat = found.force_map.reshape(rows, -1, size).swapaxes(1, 2)
-    found.force[:] = np.matmul(flat, load.reshape(rows, -1, 1))[..., 0]
-    if at.sticking:
-        by_slip, slip, held = at.sticking[disc]
-        found.force[:] += np.einsum("bpj,bp->bj", slip, held)
-        tangent += np.matmul(slip.swapaxes(1, 2), by_slip[..., None] * slip)
-    return found
 
 
 def _gradients(at: Any, disc: int) -> tuple[FloatArray, FloatArray]:
-    """∂d/∂q of the chosen contacts of a disc by its own coordinates, shape (positions, components, chosen, coordinates), and
-    how the tangents of its rollers in the bores turn with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
+    """∂d/∂q of the chosen contacts of a disc, shape (positions, components, chosen, coordinates), and the turning of the
+    tangents of its rollers with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
     """
     system, places, some, row = at.system, at.discs[disc], at.chosen[disc], at.row
     pins, bores, holes, races = at.local[disc]
@@ -155,9 +126,7 @@ def gradient_with_crank(at: Any, places: DiscPlaces, gradient: FloatArray) -> Fl
 
 
 def bores_moved(at: Any, places: DiscPlaces) -> FloatArray:
-    """Displacements of the bores, x and y, by the pose of a disc, and by the crank angle where that is a coordinate, shape
-    (positions, cranks, 2, coordinates).
-    """
+    """Derivatives of displacements of the bores by pose and, if it is one, crank angle, (positions, cranks, 2, coordinates)."""
     by_pose = places.bores.gradient
     found = np.empty((*by_pose.shape[:2], 2, by_pose.shape[2] + at.by_crank))
     found[:, :, 0, : by_pose.shape[2]], found[:, :, 1, : by_pose.shape[2]] = by_pose.real, by_pose.imag
@@ -167,7 +136,7 @@ def bores_moved(at: Any, places: DiscPlaces) -> FloatArray:
 
 
 def _rub(at: Any, disc: int, g: FloatArray) -> FloatArray:
-    """What loads press the coordinates of a disc with, G and friction along the tangents of pins and holes."""
+    """Generalised directions of loads on a disc: G and friction along the tangents of pins and holes."""
     friction = at.system.model.friction
     if friction is None:
         return g
@@ -205,9 +174,7 @@ def _rub(at: Any, disc: int, g: FloatArray) -> FloatArray:
 
 
 def _through_bodies(at: Any, disc: int, stiffness: FloatArray) -> FloatArray:
-    """Stiffnesses of wheel pins and shaft pins, shape (positions, pairs), with what the bodies yield there: diagonal of
-    K (1 + C K)⁻¹ of the chosen contacts.
-    """
+    """Stiffnesses of wheel pins and shaft pins with the bodies there, diagonal of K (1 + C K)⁻¹, shape (positions, pairs)."""
     pins, _, holes, _ = at.local[disc]
     first = at.at[disc][0].start
     own = at.chosen_stiffness[0][:, first : first + holes.stop]
@@ -222,7 +189,7 @@ def _through_bodies(at: Any, disc: int, stiffness: FloatArray) -> FloatArray:
 
 
 def bends(at: Any, disc: int) -> FloatArray:
-    """Σ F ∂²d/∂q² of the contacts of a disc by its own coordinates but what the rollers' places turn."""
+    """Σ F ∂²d/∂q² of the contacts of a disc, without the turning of the rollers' places."""
     system, places = at.system, at.discs[disc]
     pins, bores, holes, _ = system.of_kind[disc]
     found = places.flank.bend(at.load[:, 0, pins]) + places.holes.bend(at.load[:, 0, holes])
@@ -238,7 +205,7 @@ def bends(at: Any, disc: int) -> FloatArray:
 
 
 def assembled(at: Any) -> Pressing:
-    """What contacts of all discs press all coordinates with."""
+    """Generalised forces of contacts of all discs on all coordinates."""
     system, (rows, size) = at.system, (at.pose.shape[0], at.size)
     if system.discs == 1:
         alone: Pressing = at.pressing[0]
@@ -255,7 +222,6 @@ def assembled(at: Any) -> Pressing:
         tangent[:, own[:, None], own] += part.tangent
     outward, inward = (np.concatenate([part.presses[way] for part in at.pressing], axis=2) for way in (0, 1))
     bores, races = (np.concatenate([np.arange(own[kind].start, own[kind].stop) for own in at.at]) for kind in (1, 3))
-    rolls = bores, races
     return Pressing(
         g=g,
         force_map=force_map,
@@ -267,14 +233,12 @@ def assembled(at: Any) -> Pressing:
         own_bend=np.concatenate([part.own_bend for part in at.pressing], axis=1),
         force=force,
         tangent=tangent,
-        rolls=rolls,
+        rolls=(bores, races),
     )
 
 
 def turn_with_cages(tangent: FloatArray, forces: FloatArray, moved: FloatArray) -> None:
-    """Take from a tangent by the crank angle what forces of bearings turn with the cages, in place: the stiffness of rollers on
-    turning rays counts it.
-    """
+    """Subtract the forces of bearings that turn with the cages, in place: the stiffness of rollers counts them."""
     turned = np.matmul(forces[:, None], moved[..., :-1])[:, 0]
     tangent[:, :-1, -1] -= turned
     tangent[:, -1, :-1] -= turned

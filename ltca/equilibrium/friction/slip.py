@@ -1,14 +1,4 @@
-r"""How contacts slip by the pose and by the crank angle.
-
-The friction of a contact acts where the bodies touch, along their common tangent t. Its virtual work takes the displacement
-of the pin against the disc there, :math:`\delta s = s_q \cdot \delta q + s_\varphi\,\delta\varphi_C`. The derivatives that
-`ltca.geometry.pair_motion.PairMotion.along` holds are those of the pin's centre; the point of contact lies by the radius of
-the pin, or of the hole, aside, and turning bodies move it by so much more.
-
-As the drive turns the disc goes around with its eccentric and the wheel turns by 1/u: about a point at e·u from the wheel's
-axis, the pitch point, they roll on each other, and a flank contact slips by 1/u times its distance from there. The load goes
-around with the crank, and with it what plays and yielding displace the members by: e is that of the disc as it stands.
-"""
+"""How contacts slip by the pose and by the crank angle (``docs/theory/friction.md``)."""
 
 from __future__ import annotations
 
@@ -25,12 +15,10 @@ from ltca.mechanics.places import DiscPlaces
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slip:
-    """Slip of pins against a disc along the tangent, wheel pins first: ∂s/∂q, mm/mm and mm/rad, shape (positions, pairs,
-    coordinates), and ds/dφ_C of the drive that turns, mm/rad, shape (positions, pairs).
-    """
+    """Slip of pins against a disc along the tangent, wheel pins first."""
 
-    by_pose: FloatArray
-    by_crank: FloatArray
+    by_pose: FloatArray  # ∂s/∂q, mm/mm and mm/rad, shape (positions, pairs, coordinates)
+    by_crank: FloatArray  # ds/dφ_C of the drive that turns, mm/rad, shape (positions, pairs)
 
     @classmethod
     def of_disc(

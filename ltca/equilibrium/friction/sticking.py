@@ -1,16 +1,4 @@
-r"""Friction of contacts that stick or slip while the input is locked.
-
-Nothing turns, so slip is the contacts' own: what bodies yield under the torque moves them along their tangents by
-:math:`s_q \cdot \Delta q`. Every contact is a spring behind a slider (Jenkins): from one balanced state to the next its
-friction force grows with the tangential stiffness of the contact and slips at μF,
-
-.. math:: T = \mathrm{clip}(T_0 + k_t\, s_q \cdot (q - q_0),\ \pm\mu F).
-
-Bodies in line contact yield along the tangent as they do along the normal (a half-plane's displacements under either load
-differ by what is far away alone), so :math:`k_t = \partial F/\partial\delta` of the pair. Contacts that were open begin
-without force. Crank bearings and those of cranks and wheel roll by a µm there, less than a contact is wide: they resist
-elastically, and nothing is counted for them.
-"""
+"""Friction of contacts that stick or slip while the input is locked (``docs/theory/friction.md``)."""
 
 from __future__ import annotations
 
@@ -30,10 +18,8 @@ from ltca.mechanics.places import DiscPlaces
 def stick_or_slip(
     before: FloatArray, stiffness: FloatArray, moved: FloatArray, bound: FloatArray
 ) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return the force of sliders behind springs, N, and which of them stick; `bound` is μF.
+    """Return the force of sliders behind springs, clip(T₀ + k_t Δs, ±μF), N, and which of them stick; `bound` is μF.
 
-    Examples
-    --------
     >>> stick_or_slip(np.array([0.0, 0.0]), np.array(100.0), np.array([0.01, -0.1]), np.array(5.0))
     (array([ 1., -5.]), array([ True, False]))
     """
@@ -43,15 +29,11 @@ def stick_or_slip(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StickingFriction(TurningFriction):
-    """Friction of a drive whose input is locked, since a balanced state: that of its pins, bearings resist elastically.
+    """Friction of pins since a balanced state, of a drive whose input is locked; bearings resist elastically."""
 
-    Of that state are the pose of each disc, shape (positions, discs, coordinates of one), friction forces, N, and which contacts
-    carried, shape (positions, discs, pairs).
-    """
-
-    pose: FloatArray = by_drive(2)
-    tangential: FloatArray = by_drive(2)
-    closed: NDArray[np.bool_] = by_drive(2)
+    pose: FloatArray = by_drive(2)  # of the balanced state, shape (positions, discs, coordinates of one)
+    tangential: FloatArray = by_drive(2)  # friction there, N, shape (positions, discs, pairs)
+    closed: NDArray[np.bool_] = by_drive(2)  # contacts that carried there
 
     @classmethod
     def at_rest(cls, friction: TurningFriction, model: Reducer, found: Equilibrium) -> StickingFriction:
@@ -75,7 +57,7 @@ class StickingFriction(TurningFriction):
     def along(
         self, places: DiscPlaces, load: FloatArray, stiffness: FloatArray, disc: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
-        """Return friction; see `ltca.equilibrium.friction.turning.TurningFriction`."""
+        """Return friction as `TurningFriction.along` does."""
         slip = Slip.of_disc(places.geometry, places.angle, places.pose, places)
         pins = places.geometry.placement.wheel_pin_radii.shape[-1]
         coefficient = np.repeat((self.pin, self.hole), (pins, load.shape[1] - pins))

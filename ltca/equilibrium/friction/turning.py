@@ -1,13 +1,4 @@
-r"""Coulomb friction and rolling resistance of a drive that turns.
-
-Slip of the turning drive follows from kinematics (`ltca.equilibrium.friction.slip`), so every contact rubs with μF against
-it: the generalised force :math:`Q = \sum \mu F \sigma s_q` with the sense σ of its slip. A pin that is free to turn slips
-where that takes less: loose in a slot with the smaller of both coefficients, under a sleeve of bore r_i and outside R with
-:math:`\min(\mu, \mu_{seat} r_i/R)`, to first order in μ (the total forces on a free pin pass through both its contacts).
-Crank bearings roll with the moment :math:`f |F_b| (r_i + r_{BR})` between crank and disc; the bearings of cranks and wheel rub
-with f times their load at a radius of their own: the radial force, and where that is less the loads of all elements by the
-preload (`SideLaw.preload_load`). Axial forces and tilting moments are left out.
-"""
+"""Coulomb friction and rolling resistance of a drive that turns (``docs/theory/friction.md``); axial forces are left out."""
 
 from __future__ import annotations
 
@@ -28,8 +19,7 @@ from ltca.laws.bearing_pair import SideLaw
 from ltca.mechanics.places import DiscPlaces
 
 FADING_SLIP = 1e-4
-"""Slip per crank angle, relative to the eccentricity, below which friction is reduced linearly to zero: at the pitch point the
-sense of the slip reverses."""
+"""Slip per crank angle, by the eccentricity, below which friction fades: its sense reverses at the pitch point."""
 
 
 def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
@@ -38,7 +28,7 @@ def rubbing(contact: float, seat: float, part: PinWheel | PinShaft) -> float:
 
 
 def seat_travel(part: PinWheel | PinShaft) -> float:
-    """Return how far a pin slips in its seat while the surface of what is loose moves by one: r_i/R of a sleeve, 1 in a slot."""
+    """Return the slip of a pin in its seat by that of its loose surface: r_i/R of a sleeve, 1 in a slot."""
     if part.seat.kind != "sleeve":
         return 1.0
     return (part.seat.bore_radius or 0.0) / part.pin_radius
@@ -46,23 +36,17 @@ def seat_travel(part: PinWheel | PinShaft) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningFriction:
-    """Friction of a drive that turns: `motion` is +1 where its crank turns counter-clockwise, −1 clockwise, 0 of a locked input.
+    """Friction of a drive that turns."""
 
-    `pin` and `hole` are coefficients (`rubbing`), `rolling` is f·(r_i + r_BR) of the crank bearings and `support` f times the
-    radius of the bearings of cranks and wheel, mm. `crank_bearings` is the load of each bearing of a crank by the forces of the
-    discs on it, shape (bearings, discs); preloads are sums over the elements of a bearing, N, those of a crank of shape
-    (bearings,). `strength` is the part of all coefficients that counts, for continuation.
-    """
-
-    pin: float
+    pin: float  # coefficient of wheel pins, `hole` that of shaft pins (`rubbing`)
     hole: float
-    rolling: float
-    support: float
-    crank_bearings: FloatArray
-    wheel_preload: float
-    crank_preload: FloatArray
-    motion: int
-    strength: float = 1.0
+    rolling: float  # f·(r_i + r_BR) of the crank bearings, mm
+    support: float  # f times the radius of the bearings of cranks and wheel, mm
+    crank_bearings: FloatArray  # part of the force of each disc on each bearing of a crank, shape (bearings, discs)
+    wheel_preload: float  # sum over the elements, N
+    crank_preload: FloatArray  # the same of each bearing of a crank
+    motion: int  # +1 of a crank that turns counter-clockwise, −1 clockwise, 0 of a locked input
+    strength: float = 1.0  # of all coefficients, for continuation
 
     @classmethod
     def of_drive(cls, drive: Drive) -> TurningFriction | None:
@@ -99,9 +83,7 @@ class TurningFriction:
     def along(
         self, places: DiscPlaces, load: FloatArray, stiffness: FloatArray, disc: int
     ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray | None]:
-        """Return slip by the pose, the friction of wheel pins and shaft pins of a disc by their loads, what it has beside, N, and
-        what it grows with slip by, N/mm or None; each of shape (positions, pairs), the first with the coordinates behind.
-        """
+        """Return slips of pins by the pose, friction by load, other friction, N, and its growth with slip, N/mm or None."""
         slip = Slip.of_disc(places.geometry, places.angle, places.pose, places)
         place = places.geometry.placement
         pins, soft = place.wheel_pin_radii.shape[-1], FADING_SLIP * place.mean_eccentricity
@@ -111,7 +93,7 @@ class TurningFriction:
         return slip.by_pose, sense, np.zeros(load.shape), None
 
     def of_bearings(self, geometry: ContactGeometry, pose: FloatArray, push: FloatArray) -> FloatArray:
-        """Return what the crank bearings of a disc resist with by the sizes of their forces, N, shape (positions, cranks)."""
+        """Return the resistance of the crank bearings of a disc by the sizes of their forces, N, shape (positions, cranks)."""
         force = np.zeros(pose.shape)
         rolled = self.motion * self.strength * self.rolling
         force[:, DISC_ROTATION] -= rolled * push.sum(axis=1)
@@ -122,10 +104,7 @@ class TurningFriction:
     def of_wheel(
         self, parts: Sequence[DiscResponse], reduction_ratio: float, external: ComplexArray | float = 0.0
     ) -> FloatArray:
-        """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,).
-
-        The contacts of each disc come with their friction; `external` is the force from outside on the wheel, N.
-        """
+        """Return the moment by which the wheel's bearing rubs, to be overcome, ccw positive, N·mm, shape (positions,)."""
         pins = parts[0].pin_load.shape[1]
         load = np.abs(sum(part.pin_forces[:, :pins].sum(axis=1) for part in parts) + external)
         load = np.maximum(load, self.wheel_preload)
@@ -134,8 +113,7 @@ class TurningFriction:
     def of_cranks(self, pushes: Sequence[ComplexArray], on_bearings: ComplexArray | None = None) -> FloatArray:
         """Return the moment that rubbing takes at every crank, ccw positive, N·mm, shape (positions, cranks).
 
-        `pushes` are the forces of each crank on every disc, N, complex, shape (positions, cranks), and `on_bearings` what its
-        bearings carry besides, shape (positions, cranks, bearings), further bearings behind those of the discs.
+        `pushes` are its forces on every disc, N, `on_bearings` further ones on bearings, shape (positions, cranks, bearings).
         """
         forces = np.stack(pushes, axis=-1)
         carried = np.matmul(forces, self.crank_bearings.T.astype(complex))
