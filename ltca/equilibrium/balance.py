@@ -31,6 +31,8 @@ MAX_TORQUE_STEPS = 7
 LEAST_TORQUE_RATIO = 1.05
 COARSER = 4
 """Leading positions for one that leads these, where evaluations take long."""
+MANY = 360
+"""Positions from which some lead the others even where evaluations take little."""
 FEW_ITERATIONS = 3
 """Iterations that a nearby start takes at most."""
 
@@ -190,6 +192,9 @@ def _stages(
         some = np.isin(beside, leading)
         few = np.isin(beside, leading[::COARSER])
         levels = [beside[few], beside[some & ~few], beside[~some]]
+    elif series == 1 and leading.size < count and count >= MANY:
+        some = np.isin(beside, leading)
+        levels = [beside[some], beside[~some]]
     for number, level in enumerate(levels):
         if level.size:
             yield level, _place(search, level, (np.cumsum(led) - 1)[level // count] if number == 0 else None)
@@ -204,6 +209,8 @@ def _place(search: Search, rows: NDArray[np.intp], leaders: NDArray[np.intp] | N
     known, contacts = search.contacts()
     angle = search.angle[known]
     way = between(angle, wanted) if leaders is None else (leaders[:, None], np.ones((rows.size, 1)))
+    if search.holding is not None:
+        search.moment[rows] = (way[1] * search.moment[known][way[0]]).sum(axis=1)
     search.pose[rows] = pose_between(angle, search.pose[known], wanted, model.coordinates, way)
     ratio = model.discs[0].geometry.placement.reduction_ratio
     return start_between(angle, Start.after(contacts), wanted, ratio, way)

@@ -82,6 +82,8 @@ ROUND_OFF = 1e-13
 """Round-off of places, mm."""
 LEAST_CHANGE = 1e-13
 """Least change of a load, by the largest of its position, that counts."""
+LEAST_ROUGHLY = 5e-3
+"""The same for a step of a search, in whose residual what is left counts all the same."""
 
 
 class ContactSystem:
@@ -603,7 +605,8 @@ class Linearised:
         moved = np.abs(self.de).sum(axis=1)
         # A roller that hardly touches may go on for ever in a direction that changes no load.
         changed = np.abs(self.change).sum(axis=1)
-        matters = changed > LEAST_CHANGE * self.load[:, 0].max(axis=1, initial=0.0)[:, None]
+        least = LEAST_ROUGHLY if self.roughly else LEAST_CHANGE
+        matters = changed > least * self.load[:, 0].max(axis=1, initial=0.0)[:, None]
         self.moved = np.max(np.where(matters & (stiffness[0] > 0.0), moved, 0.0), axis=1, initial=0.0)
         if self.system.deforms:
             self.moved = np.maximum(self.moved, self._closed)
