@@ -757,6 +757,13 @@ def longest_step(run: PreparedRun) -> float:
     return 2.0 * np.pi / (run.drive.pin_wheel.number_of_pins * crank_speed * STEPS_PER_PIN)
 
 
+def _stopped(solver: DOP853, equation: Equation, problem: str) -> ConvergenceError:
+    """The error of a run that goes no farther, with what refused the last states tried."""
+    return ConvergenceError(
+        f"the run stops at {solver.t:.6g} s: {equation.refused[-1] if equation.refused else problem}", []
+    )
+
+
 def run_in_time(
     run: PreparedRun,
     *,
@@ -804,13 +811,16 @@ def run_in_time(
     while solver.status == "running":
         problem = solver.step()
         if solver.status == "failed":
-            raise ConvergenceError(f"the run stops at {solver.t:.6g} s: {problem}", [])
+            raise _stopped(solver, equation, problem)
         taken += 1
         between = None
         while recorder.rows < recorder.times.size and recorder.times[recorder.rows] <= solver.t:
             between = solver.dense_output() if between is None else between
             at = float(recorder.times[recorder.rows])
-            recorder.take(solver.y if at == solver.t else between(at))
+            state = solver.y if at == solver.t else between(at)
+            if not np.isfinite(state).all():
+                raise _stopped(solver, equation, "no state between its steps")
+            recorder.take(state)
             advance(1)
         if taken % STEPS_BETWEEN == 0 and solver.status == "running":
             equation.contacts.forget_grids()

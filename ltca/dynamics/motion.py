@@ -6,7 +6,7 @@ Coordinates are :math:`x = B y + g\,s(t)`; beside y and its rate the state has t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -57,6 +57,7 @@ class Equation:
     input_torque: float | None  # None where the input turns by `input_motion`
     damping_ratio: float
     massless: MasslessParts | None = None
+    refused: list[ConvergenceError] = field(default_factory=list)  # of states tried since the last that had a rate
 
     @property
     def freedoms(self) -> int:
@@ -95,8 +96,18 @@ class Equation:
         return x, rate, now, self.basis + self.massless.columns @ (slope @ self.basis)
 
     def rates(self, time: float, state: FloatArray) -> FloatArray:
-        """Return the rate of a state, shape (2m + 4,)."""
-        return self.solved(time, state).state_rate
+        """Return the rate of a state, shape (2m + 4,); NaN, which makes a step shorter, where contacts have no loads at it."""
+        if not np.isfinite(state).all():  # a stage behind such a one
+            return np.full(state.size, np.nan)
+        kept = self.warm_start()
+        try:
+            rate = self.solved(time, state).state_rate
+        except ConvergenceError as problem:
+            self.start_from(kept)
+            self.refused.append(problem)
+            return np.full(state.size, np.nan)
+        self.refused.clear()
+        return rate
 
     def solved(self, time: float, state: FloatArray) -> Moment:
         """Return the rate of a state, with torque, forces and coordinates."""
