@@ -43,16 +43,7 @@ from ltca.mechanics.elimination import (
     eliminate_rollers,
     loads_of,
 )
-from ltca.mechanics.places import (
-    DiscPlaces,
-    Indices,
-    State,
-    beside,
-    mixed,
-    padded,
-    places_of,
-    with_crank,
-)
+from ltca.mechanics.places import DiscPlaces, Indices, State, beside, mixed, padded, places_of, with_crank
 from ltca.mechanics.pressing import BySlope, Pressing, pressing_of
 
 if TYPE_CHECKING:
