@@ -264,27 +264,25 @@ class ContactGeometry:
             found[:, crank] += pose[:, first] + 1j * pose[:, first + 1]
         return found
 
-    def flank_tilt(
-        self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion, leans: ComplexArray | None = None
-    ) -> PairTilt:
-        """Return the tilt of wheel pins and flank, with `leans` of the bent pins at the disc in the turning wheel, rad."""
-        return flank.leaning(*self.flank_lean(crank_angle, pose, leans), self.coordinates_of(pose))
+    def flank_tilt(self, crank_angle: FloatArray, pose: FloatArray, flank: FlankMotion) -> PairTilt:
+        """Return the tilt of wheel pins and flank."""
+        return flank.leaning(*self.flank_lean(crank_angle, pose), self.coordinates_of(pose))
 
     def flank_lean(
         self, crank_angle: FloatArray, pose: FloatArray, leans: ComplexArray | None = None
     ) -> tuple[ComplexArray, Turns]:
-        """Return the lean of the disc at each wheel pin less that of the pin, and how it turns with the wheel."""
+        """Return the lean of the disc at each wheel pin less that of the pin, with `leans` by bending, and how it turns, rad."""
         place = self.placement
         turned = unit(place.wheel_rotation(crank_angle)[:, None] + pose[:, WHEEL_ANGLE, None])
         own = (place.wheel_pin_leans if leans is None else place.wheel_pin_leans + leans) * turned
         return self.lean(pose) - place.wheel_lean - self.wheel_lean(pose) - own, {WHEEL_ANGLE: -1j * own}
 
-    def hole_tilt(self, pose: FloatArray, holes: PairMotion, leans: ComplexArray | None = None) -> PairTilt:
-        """Return the tilt of shaft pins and holes; arguments as for `holes`, leans of the bent pins in the fixed frame."""
-        return holes.leaning(*self.hole_lean(pose, leans), self.coordinates_of(pose))
+    def hole_tilt(self, pose: FloatArray, holes: PairMotion) -> PairTilt:
+        """Return the tilt of shaft pins and holes; arguments as for `holes`."""
+        return holes.leaning(*self.hole_lean(pose), self.coordinates_of(pose))
 
     def hole_lean(self, pose: FloatArray, leans: ComplexArray | None = None) -> tuple[ComplexArray, Turns]:
-        """Return the lean of the disc at each hole less that of the pin, and how it follows disc and ring."""
+        """Return the lean of the disc at each hole less that of the pin, with `leans` by bending, and how it follows the pose."""
         place, coordinates = self.placement, self.coordinates_of(pose)
         own = place.hole_leans * unit(pose[:, DISC_ROTATION, None])
         lean = self.lean(pose) + own - place.shaft_pin_leans

@@ -125,21 +125,9 @@ class ContactSystem:
         chosen = [[np.arange(size)[None] for size in sizes] for _ in range(self.discs)]
         return chosen, *places_of(chosen)
 
-    def respond(
-        self,
-        angle: FloatArray,
-        pose: FloatArray,
-        start: Start | None,
-        *,
-        roughly: bool,
-        everything: bool = False,
-        by_crank: bool = False,
-    ) -> Linearised:
+    def respond(self, angle: FloatArray, pose: FloatArray, start: Start | None, **how: bool) -> Linearised:
         """Return the contacts at poses in one group; arguments as for `in_groups`."""
-        groups = self.in_groups(
-            angle, pose, start, roughly=roughly, everything=everything, by_crank=by_crank, apart=False
-        )
-        return groups[0][1]
+        return self.in_groups(angle, pose, start, apart=False, **how)[0][1]
 
     def in_groups(
         self,
@@ -702,18 +690,10 @@ class Linearised:
         """Largest approach of a loaded contact, mm, shape (positions,)."""
         return np.asarray(np.max(np.abs(self.overlap[:, 0]) * (self.load[:, 0] > 0.0), axis=1, initial=0.0))
 
-    def again(self, state: State) -> Linearised:
-        """Return the contacts at the same poses with other inner unknowns."""
-        return Linearised(
-            self.system,
-            self.angle,
-            self.pose,
-            state,
-            None if self.by_crank else self.known,
-            roughly=self.roughly,
-            margin=self.margin,
-            by_crank=self.by_crank,
-        )
+    def again(self, state: State, before: Linearised | None = None) -> Linearised:
+        """Return the contacts at the same poses with other inner unknowns, at the same places as `before`."""
+        known, how = None if self.by_crank else self.known, {"roughly": self.roughly, "by_crank": self.by_crank}
+        return Linearised(self.system, self.angle, self.pose, state, known, margin=self.margin, before=before, **how)
 
     def of_rows(self, system: ContactSystem, rows: Indices) -> Linearised:
         """Return some positions as those of another system."""
@@ -827,17 +807,7 @@ class Linearised:
         start = self.along(self.step)
         low_slope, high_slope = start.copy(), np.zeros(rows)
         for _ in range(MAX_HALVINGS):
-            found = Linearised(
-                self.system,
-                self.angle,
-                self.pose,
-                self._state(fraction),
-                self.known,
-                roughly=self.roughly,
-                before=self,
-                margin=self.margin,
-                by_crank=self.by_crank,
-            )
+            found = self.again(self._state(fraction), self)
             if not self.system.deforms:
                 break
             part = fraction[:, None, None]

@@ -145,11 +145,10 @@ class PinMembers:
                 if at.by_crank:
                     by_place[:, first:last, -1] = np.matmul(along, of_disc.nominal)[..., 0]
                 if system.components > 1:
-                    half = at.half[..., None] if at.half.ndim else at.half
                     by_lean = slip[:, 1]
-                    by_lean[:, first:last, own[system.one.lean_place]] = half * along[..., DISC_PLACE]
+                    by_lean[:, first:last, own[system.one.lean_place]] = at._thick * along[..., DISC_PLACE]
                     if kind == 0 and system.one.wheel_leans:
-                        by_lean[:, first:last, own[system.one.wheel_lean_place]] = -half * along[..., DISC_PLACE]
+                        by_lean[:, first:last, own[system.one.wheel_lean_place]] = -at._thick * along[..., DISC_PLACE]
         return np.concatenate(each, axis=2), slip, turn
 
     def add_flexibility(self, whole: FloatArray) -> None:

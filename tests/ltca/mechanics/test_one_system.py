@@ -78,9 +78,9 @@ class DiscByItself:
         journals = bores.each(geometry.journal_leans(pose), self.inward.shape[1])
         at_race, at_bore = (dot(rays.direction, lean) for lean in (journals, geometry.lean(pose)))
         tilt = (
-            geometry.flank_tilt(angle, pose, flank, leans[0]).tilt,
+            flank.leaning(*geometry.flank_lean(angle, pose, leans[0]), geometry.coordinates_of(pose)).tilt,
             self.lean - at_bore,
-            geometry.hole_tilt(pose, holes, leans[1]).tilt,
+            holes.leaning(*geometry.hole_lean(pose, leans[1]), geometry.coordinates_of(pose)).tilt,
             at_race - self.lean,
         )
         return flank, approach, tilt
