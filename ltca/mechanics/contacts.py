@@ -65,8 +65,6 @@ TOGETHER = 4
 MAX_HALVINGS = 12
 STEEPEST = 0.3
 """Largest slope of the energy at the end of a correction by that at its start."""
-KINK = 10.0
-"""Slope behind the place of least energy by that before it from which a contact closes between them."""
 LEFT_WEIGHT = 100.0
 """Weight of the residual of the inner unknowns: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
@@ -802,10 +800,7 @@ class Linearised:
         self, moves: NDArray[np.bool_], leave: Callable[[NDArray[np.bool_]], bool] | None = None
     ) -> Linearised:
         """The contacts with deformations of some positions a step on, or where the energy along it has nearly ceased to fall."""
-        rows = self.angle.size
-        fraction, low, high = moves.astype(float), np.zeros(rows), np.ones(rows)
-        start = self.along(self.step)
-        low_slope, high_slope = start.copy(), np.zeros(rows)
+        fraction, steepest = moves.astype(float), STEEPEST * np.abs(self.along(self.step))
         for _ in range(MAX_HALVINGS):
             found = self.again(self._state(fraction), self)
             if not self.system.deforms:
@@ -814,19 +809,11 @@ class Linearised:
             found.supposed = self.supposed + part * (self.load + self.of_all(self.change) - self.supposed)
             if not (self.held or self.system.coupled):
                 break
-            end = found.along(self.step)
-            far = found.off > self.off if self.system.coupled else end > STEEPEST * np.abs(start)
+            far = found.off > self.off if self.system.coupled else found.along(self.step) > steepest
             far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
             if not far.any() or (leave is not None and leave(far)):
                 break
-            high, high_slope = np.where(far, fraction, high), np.where(far, end, high_slope)
-            near = (end < 0.0) & ~far & (fraction < 1.0)
-            low, low_slope = np.where(near, fraction, low), np.where(near, end, low_slope)
-            rise = high_slope - low_slope
-            place = np.divide(-low_slope, rise, out=np.full(rows, 0.5), where=rise != 0.0)
-            # A contact that closes has no slope before, and a steep one behind: where is told by neither.
-            place = np.where((place > 0.0) & (high_slope < KINK * np.abs(low_slope)), place, 0.5).clip(0.1, 0.9)
-            fraction = np.where(far, low + (high - low) * place, fraction)
+            fraction = np.where(far, 0.5 * fraction, fraction)
         return found
 
     @cached_property
