@@ -61,9 +61,7 @@ def equilibrium_of_disc(model: Reducer, found: Equilibrium, disc: int) -> Equili
 
 
 def lever_arms(model: Reducer) -> FloatArray:
-    """Lever arms of the residual, mm: e z_C of discs, e z_P of the wheel, e of twists, half widths of leans, 1 of
-    displacements.
-    """
+    """Lever arms of the residual, mm: e z_C of discs, e z_P of the wheel, e of twists, half widths of leans, 1 of places."""
     coordinates, geometries = model.coordinates, model.geometries
     eccentricities = [geometry.placement.mean_eccentricity[..., 0] for geometry in geometries]
     ring = np.ones(())

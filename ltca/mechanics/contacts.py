@@ -63,8 +63,6 @@ MAX_CORRECTIONS = 60
 TOGETHER = 4
 """Positions that are corrected together though most of them have settled."""
 MAX_HALVINGS = 12
-STEEPEST = 0.3
-"""Largest slope of the energy at the end of a correction by that at its start."""
 LEFT_WEIGHT = 100.0
 """Weight of the residual of the inner unknowns: moments of the cranks are balanced more closely than forces."""
 ROUND_OFF = 1e-13
@@ -138,13 +136,11 @@ class ContactSystem:
         by_crank: bool = False,
         apart: bool = True,
     ) -> list[tuple[Indices, Linearised]]:
-        """Return contacts at poses, to first order in the residual of the inner unknowns, then groups that replace some
-        positions.
+        """Return contacts at poses, to first order in what inner unknowns leave, then groups of those that settle later, `apart`.
 
-        Groups are positions that settle later and are corrected `apart`. Contacts far from touching that others move are left
-        out unless `everything` counts or, if not `roughly`, one of them turns out to be pressed. With `by_crank` the crank
-        angle is a coordinate by which cages turn, discs and wheel move nominally; the tangent then is Σ k g gᵀ, without forces
-        that turn.
+        Contacts far from touching that others move are left out unless `everything` counts or, if not `roughly`, one of them
+        turns out to be pressed. With `by_crank` the crank angle is a coordinate by which cages turn, discs and wheel move
+        nominally; the tangent then is Σ k g gᵀ, without forces that turn.
         """
         state = self._begin(with_crank(pose, angle) if by_crank else pose, start)
         known = None if start is None else start.known
@@ -705,17 +701,9 @@ class Linearised:
         """Inner unknowns without the correction."""
         return self._state(np.zeros(self.angle.size))
 
-    @cached_property
-    def _whole_state(self) -> State:
-        """Inner unknowns after the whole correction."""
-        return self._state()
-
     def _state(self, fraction: FloatArray | None = None) -> State:
         """Inner unknowns after the correction, or a fraction of it."""
-        system, approach = self.system, None
-        if system.deforms:
-            approach = self.after
-        shifts = self.shifts_after
+        approach, shifts = self.after if self.system.deforms else None, self.shifts_after
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
             part = fraction[:, None]
@@ -792,48 +780,27 @@ class Linearised:
                 break
             at = at._stepped(going)
         state = at._state()
-        if state.shifts is not None:
-            state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
+        assert state.shifts is not None
+        state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
         return self.again(state if moves.all() else mixed(self.here, state, moves))
 
     def _stepped(
         self, moves: NDArray[np.bool_], leave: Callable[[NDArray[np.bool_]], bool] | None = None
     ) -> Linearised:
-        """The contacts with deformations of some positions a step on, or where the energy along it has nearly ceased to fall."""
-        fraction, steepest = moves.astype(float), STEEPEST * np.abs(self.along(self.step))
+        """The contacts with deformations of some positions a step on, or a part of it that leaves no more of them over."""
+        fraction = moves.astype(float)
         for _ in range(MAX_HALVINGS):
             found = self.again(self._state(fraction), self)
             if not self.system.deforms:
                 break
-            part = fraction[:, None, None]
-            found.supposed = self.supposed + part * (self.load + self.of_all(self.change) - self.supposed)
+            # A first step leads from what was expected to deformations that follow from loads, wherever that is.
             if not (self.held or self.system.coupled):
                 break
-            far = found.off > self.off if self.system.coupled else found.along(self.step) > steepest
-            far = far & moves & (found.off > 0.5 * self.off) & (found.off > ROUND_OFF * 100.0)
+            far = (found.off > self.off) & moves & (found.off > ROUND_OFF * 100.0)
             if not far.any() or (leave is not None and leave(far)):
                 break
             fraction = np.where(far, 0.5 * fraction, fraction)
         return found
-
-    @cached_property
-    def supposed(self) -> FloatArray:
-        """Loads φ with which the deformations are d − W φ: those at them where they have not been corrected, N."""
-        return self.load
-
-    @cached_property
-    def step(self) -> FloatArray:
-        """Correction of the deformations of all contacts."""
-        return self.after - self.deformation
-
-    def along(self, step: FloatArray) -> FloatArray:
-        """Return the slope of the energy of the inner unknowns along a step of the deformations, N·mm.
-
-        With deformations e = d − W φ it is Σ U(e) + ½ φᵀ W φ, convex in φ, and its slope (f(e) − φ)ᵀ de.
-        """
-        if self.system.coupled or not self.system.deforms:
-            return np.zeros(step.shape[0])
-        return np.asarray(((self.load - self.supposed) * step).sum(axis=(1, 2)))
 
     @cached_property
     def yielding(self) -> list[list[FloatArray]]:
@@ -863,7 +830,7 @@ class Linearised:
     @property
     def inner(self) -> Inner:
         """Inner unknowns beside the pose, and how they follow it."""
-        state = self._whole_state
+        state = self._state()
         shifts = None
         if self.shifts is not None and self.de_by_pose is not None:
             pins = self.system.model.pins

@@ -44,8 +44,8 @@ class PinMembers:
                 self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
 
     def forces(self, load: FloatArray, aside: FloatArray | None = None, *, changes: bool = False) -> ComplexArray:
-        """Return Lᵀ f of loads of all contacts, shape (positions, rows, pairs); friction of contacts that stick counts unless
-        these are `changes`, and forces `aside` of the normals, shape (positions, components, discs, pairs), are added.
+        """Return Lᵀ f of loads or of `changes` of loads, friction that sticks left out, shape (positions, rows, pairs), and of
+        forces `aside` of the normals, shape (positions, components, discs, pairs).
         """
         system, forces, moments = self.at.system, [], []
         for disc, kinds in enumerate(system.of_kind):

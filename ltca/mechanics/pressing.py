@@ -81,9 +81,7 @@ def pressing_of(at: Any, disc: int) -> Pressing:
 
 
 def _gradients(at: Any, disc: int) -> tuple[FloatArray, FloatArray]:
-    """∂d/∂q of the chosen contacts of a disc, shape (positions, components, chosen, coordinates), and the turning of the
-    tangents of its rollers with the pose, Im(n̄ ∂), shape (positions, rollers, coordinates).
-    """
+    """∂d/∂q of the chosen contacts of a disc, and how the tangents of its rollers turn with the pose, Im(n̄ ∂)."""
     system, places, some, row = at.system, at.discs[disc], at.chosen[disc], at.row
     pins, bores, holes, races = at.local[disc]
     size = at.columns[disc].size
