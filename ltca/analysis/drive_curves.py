@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from math import ceil
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ltca.analysis import loaded_analysis
-from ltca.analysis.engines import Engine, describe_engine, lent_words
+from ltca.analysis.engines import Engine, HalfSpace, describe_engine, lent_words
 from ltca.analysis.half_space_errors import half_space_words
 from ltca.analysis.life.bearing_lives import BearingLives, lives_over, passages_of_duty
 from ltca.analysis.life.life_text import life_content, life_lines
@@ -19,19 +20,20 @@ from ltca.analysis.memory_need import positions_together
 from ltca.analysis.pressure_safety import PressureOfTurns, PressureSafety
 from ltca.analysis.stiffness_by_part import StiffnessByPart, stiffness_by_part
 from ltca.analysis.torque_curve import UNDER_FORCES, TorqueCurve, curve_angles, curve_content, torque_curve
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, known_orders, least_turns
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_orders, fitted_orders, least_turns
 from ltca.arrays import FloatArray
 from ltca.drive.members.judgement import Value, judge
 from ltca.drive.members.limits import Limit
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.errors import DriveError
+from ltca.equilibrium.output_angle import play_before_cranks
+from ltca.errors import ConvergenceError, DriveError
+from ltca.geometry.play import PLAY_SAMPLED, TurnPlay, play_over_a_turn, preload_words
 
 POSITIONS_PER_TURN = 192
 """Least positions in a turn; more where the highest order asks for them (`positions_per_turn`)."""
 HARMONICS = 7
-"""Multiples of each origin of an order; fewer, but two, where the teeth are many (`HIGHEST_ORDER`)."""
-HIGHEST_ORDER = 320
+"""Multiples of each origin of an order; fewer, but two, where the teeth are many (`fitted_orders`)."""
 POSITIONS_PER_PERIOD = 2.05
 """Positions for each period of the highest order, beyond the two that tell it from others."""
 
@@ -90,6 +92,9 @@ class DriveCurves:
         Over all positions; its position is one of that turn.
     parts : StiffnessByPart or None
         The stiffness with and without each part, where it was asked for.
+    play : TurnPlay or None
+        Free play of the wheel over a turn with that of a first stage, as `cyclo run` has it; None where forces from outside
+        displace the wheel, or a position has no answer.
 
     Examples
     --------
@@ -113,6 +118,24 @@ class DriveCurves:
     pressure: FloatArray
     safety: PressureSafety
     parts: StiffnessByPart | None = None
+    play: TurnPlay | None = None
+
+    @property
+    def backlash_of_turn(self) -> FloatArray | None:
+        """Least and largest backlash at the output among sampled positions of a turn, rad."""
+        if self.play is None:
+            return None
+        return abs(self.drive.output_per_wheel_angle) * np.array([self.play.least, self.play.largest])
+
+    @property
+    def backlash_words(self) -> str:
+        """Range of the backlash at the output, ′, and where it was sampled."""
+        of_turn = self.backlash_of_turn
+        if self.play is None or of_turn is None:
+            angles = self.curve.crank_angle.size
+            return f"{_range(self.curve.backlash * ARCMIN)}′, sampled at {angles} crank angles over one mesh"
+        remarks = filter(None, (preload_words(self.play.preloaded), PLAY_SAMPLED))
+        return ", ".join([f"{_range(of_turn * ARCMIN)}′", *remarks])
 
     @property
     def content(self) -> dict[str, Any]:
@@ -126,7 +149,7 @@ class DriveCurves:
 
 def known_orders_of(drive: Drive) -> tuple[Order, ...]:
     """Return the orders that are fitted."""
-    return known_orders(drive, harmonics=min(HARMONICS, max(2, HIGHEST_ORDER // drive.disc.number_of_teeth)))
+    return fitted_orders(drive, harmonics=HARMONICS)
 
 
 def positions_per_turn(drive: Drive) -> int:
@@ -216,7 +239,17 @@ def solve_curves(
         pressure=pressures.worst,
         safety=pressures.safety(float("inf") if settings.pressure is None else settings.pressure),
         parts=parts,
+        play=None if curve.displaced else _play_over_a_turn(drive),
     )
+
+
+def _play_over_a_turn(drive: Drive) -> TurnPlay | None:
+    """Free play of the wheel over a turn; None where a position has no answer."""
+    model = HalfSpace().prepare(drive).model
+    try:
+        return play_over_a_turn(model.geometries, partial(play_before_cranks, model))
+    except ConvergenceError:
+        return None
 
 
 def curve_lines(found: DriveCurves, title: str) -> list[str]:
@@ -238,14 +271,14 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
     told = "without a limit" if limit is None else f"safety {safety.safety:.3f} against {limit:g} MPa"
     return [
         f"{title}, {drive.load_words()}, {describe_engine(found.engine)}: torque curve at {curve.crank_angle.size} crank "
-        "angles over one mesh",
+        "angles over one mesh, ranges sampled there",
         *(
             f"  {words}"
             for words in [half_space_words(found.engine, drive) or lent_words(found.engine, drive)]
             if words
         ),
         *(f"  {line}" for line in light_torque_lines({drive.case: drive})),
-        f"  {floating:<40}  {_range(curve.backlash * ARCMIN)}′",
+        f"  {floating:<40}  {found.backlash_words}",
         *([f"  {UNDER_FORCES}"] if curve.displaced else []),
         f"  lost motion at ±{100.0 * curve.lost_motion_part:g} % of the rated torque   {_range(curve.lost_motion * ARCMIN)}′",
         *of_loop,
@@ -258,7 +291,7 @@ def curve_lines(found: DriveCurves, title: str) -> list[str]:
         f"  {'unexplained, rms':<{width + 13}}{spectrum.residual * ARCSEC:>9.4f}″",
         *([f"  {resolution_words(found)}"] if any(" or " in order.name for order, _ in strongest) else []),
         *life_lines(found.lives, drive, life_speed(drive, found.settings)),
-        f"flank pressure {safety.largest:.1f} MPa, {told}, largest {over}",
+        f"flank pressure {safety.largest:.1f} MPa, {told}, largest sampled {over}",
     ]
 
 
@@ -295,8 +328,12 @@ def _finite(value: float) -> float | None:
 def curve_contents(found: DriveCurves) -> dict[str, Any]:
     """Return the curves of a drive as files hold them."""
     drive, curve, spectrum, safety = found.drive, found.curve, found.spectrum, found.safety
+    of_turn = found.backlash_of_turn
     return {
-        "torque_curve": curve_content(curve, drive),
+        "torque_curve": {
+            **curve_content(curve, drive),
+            "backlash_over_a_turn_rad": None if of_turn is None else of_turn.tolist(),
+        },
         "stiffness_by_part": None if found.parts is None else found.parts.content,
         "transmission_error_orders": {
             "turns": found.turns,

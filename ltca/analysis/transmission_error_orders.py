@@ -24,6 +24,16 @@ LEAST_SINGULAR_RATIO = 1e-3
 """Least singular value, relative to the largest, at which orders can be distinguished."""
 SAME_DISTANCE = 1e-6
 """Part of the distance of orders that turns tell apart by which one may be nearer, for the rounding of angles."""
+NAMED_HARMONICS = 7
+"""Multiples of each origin that names are looked for among, however many are fitted: an order has one name everywhere."""
+HIGHEST_ORDER = 320
+"""Order of the flank up to which multiples are fitted."""
+PASSED_HARMONICS = 3
+"""Multiples of each origin from which orders of rollers that pass flank and holes keep clear."""
+CLEAR_OF_OTHERS = 0.99
+"""Periods by which these orders shift against any of those over as many turns as there are wheel pins, at least."""
+SAME_ORDER = 1e-9
+"""Difference up to which orders are one."""
 POSITIONS_PER_CHUNK = 20_000
 """Positions whose columns are held in memory at once."""
 
@@ -127,9 +137,76 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
     harmonics : int
         Multiples of each origin.
     """
+    names = [*_origins(drive, max(harmonics, NAMED_HARMONICS)), *_rollers_past(drive)]
+    found: list[Order] = []
+    for order in _origins(drive, harmonics):
+        if order.value > 0.0 and all(abs(order.value - other.value) > SAME_ORDER for other in found):
+            found.append(_named(order, names))
+    return tuple(sorted(found))
+
+
+def fitted_orders(drive: Drive, *, harmonics: int) -> tuple[Order, ...]:
+    """Return the orders that are fitted over many turns: `known_orders`, and with rollers that pass flank and holes, ascending.
+
+    Rollers bend the same contacts as the flank and the holes, so that sums and differences of their orders show as well; those
+    less than an order apart from others over as many turns as there are wheel pins are left out, since positions could not
+    tell them apart.
+
+    Parameters
+    ----------
+    drive : Drive
+        The drive.
+    harmonics : int
+        Multiples of each origin; no more than `most_harmonics`.
+    """
+    harmonics = min(harmonics, most_harmonics(drive))
+    found, few = list(known_orders(drive, harmonics=harmonics)), min(harmonics, PASSED_HARMONICS)
+    clear_of = [0.0, *(order.value for order in known_orders(drive, harmonics=few))]
+    names = [*_origins(drive, max(harmonics, NAMED_HARMONICS)), *_rollers_past(drive)]
+    beside, turns = _rollers_past(drive), drive.pin_wheel.number_of_pins
+    if holes := drive.number_of_holes:
+        beside = [Order(float((few + 1) * holes), f"pin holes, {few + 1} z_PS"), *beside]
+    for order in beside:
+        if all(abs(order.value - other) * turns > CLEAR_OF_OTHERS for other in clear_of):
+            clear_of.append(order.value)
+            if all(abs(order.value - other.value) > SAME_ORDER for other in found):
+                found.append(_named(order, names))
+    return tuple(sorted(found))
+
+
+def most_harmonics(drive: Drive) -> int:
+    """Return the multiples of each origin that are fitted at most: fewer, but two, where the teeth are many."""
+    return max(2, HIGHEST_ORDER // drive.disc.number_of_teeth)
+
+
+def _named(order: Order, names: list[Order]) -> Order:
+    """An order by the first of its names."""
+    return next((order._replace(name=one.name) for one in names if abs(one.value - order.value) <= SAME_ORDER), order)
+
+
+def _rollers_past(drive: Drive) -> list[Order]:
+    """Sums and differences of the orders of rollers with those of flank and holes."""
+    passage = drive.crank_bearing.number_of_rollers * _against_cage(drive)
+    beside = [(multiple * drive.disc.number_of_teeth, f"{multiple} z_C") for multiple in (1, 2)]
+    if holes := drive.number_of_holes:
+        beside.append((holes, "z_PS"))
+    orders = list[Order]()
+    for value, name in beside:
+        orders.append(Order(abs(value - passage), f"rollers past {name}, difference"))
+        orders.append(Order(value + passage, f"rollers past {name}, sum"))
+    return orders
+
+
+def _against_cage(drive: Drive) -> float:
+    """Turns of the crank against the cage of its rollers by turn of the crank."""
+    return 1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
+
+
+def _origins(drive: Drive, harmonics: int) -> list[Order]:
+    """Orders by their origins, the likelier of several before others."""
     flank, pins = drive.disc.number_of_teeth, drive.pin_wheel.number_of_pins
     holes, rollers = drive.number_of_holes, drive.crank_bearing.number_of_rollers
-    cage = 1.0 - float(Placement.of_drive(single_discs(drive)[0]).cage_speed)
+    cage = _against_cage(drive)
     names: list[Order] = []
     for multiple in range(1, harmonics + 1):
         names.append(Order(float(multiple * flank), f"flank, {multiple} z_C"))
@@ -160,11 +237,7 @@ def known_orders(drive: Drive, *, harmonics: int = 4) -> tuple[Order, ...]:
         # The sun turns so often against the carrier; shares of the cranks, which weight it, turn with them.
         names += [Order(stage.ratio, "sun, z₂/z₁")]
         names += [Order(abs(stage.ratio + side), f"sun {side:+d} crank") for side in (-2, -1, 1, 2)]
-    found: list[Order] = []
-    for order in names:
-        if order.value > 0.0 and all(abs(order.value - other.value) > 1e-9 for other in found):
-            found.append(order)
-    return tuple(sorted(found))
+    return names
 
 
 def least_turns(orders: tuple[Order, ...], positions: int, most: int) -> int:

@@ -56,6 +56,10 @@ SIDES = 16
 """Sides of the polygon about the circle of a bearing, beside its tangents."""
 CIRCLE = 0.01
 """Length by which the displacement in a bearing without clearance is counted, mm; it moves nothing."""
+ROOM_SOUGHT = 1.0
+"""Gap of all pairs that a pose without overlap is sought with, mm: more than any is left, so that the least becomes largest."""
+FEW_PROGRAMMES = 5
+"""Linear programmes after which a pose without overlap is not sought any more."""
 GATHER_BELOW = 0.7
 """Fraction of a batch that still pivots below which those rows are gathered."""
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
@@ -188,6 +192,17 @@ def free_play(discs: Sequence[ContactGeometry], crank_angle: FloatArray, *, over
     shut = forward < backward
     middle = 0.5 * (forward + backward)
     return Play(forward=np.where(shut, middle, forward), backward=np.where(shut, middle, backward), preloaded=preloaded)
+
+
+def least_overlap(discs: Sequence[ContactGeometry], crank_angle: FloatArray) -> FloatArray:
+    """Return the least overlap of parts, mm, among the poses of a few programmes at each crank angle.
+
+    At most `CLOSED`, it is proof that parts need not overlap there, for a tenth of the time of `free_play`.
+    """
+    group = discs
+    if not any(disc.has_loose_supports for disc in discs):
+        group = [replace(disc, coordinates=Coordinates(leans=disc.stands_askew)) for disc in discs]
+    return _Programme(group, crank_angle, -ROOM_SOUGHT).least_overlap()
 
 
 def _beside_preload(programme: _Programme, poses: FloatArray) -> FloatArray:
@@ -363,6 +378,21 @@ class _Programme:
         others.append((room, corner.reshape(rows.size, -1, self.size)))
         gap, slope = _joined([*arcs, *others])
         return gap + self.room[rows], slope, sum(each.shape[1] for each, _ in arcs)
+
+    def least_overlap(self) -> FloatArray:
+        """Return the least overlap at poses that widen the least gap, mm; of a position no more once it is at most `CLOSED`."""
+        pose, found = np.zeros((self.angle.size, self.size)), np.full(self.angle.size, np.inf)
+        going, still = np.arange(self.angle.size), np.zeros(self.angle.size)
+        for programme in range(FEW_PROGRAMMES + 1):
+            gap, slope, _ = self.gaps(going, pose[going])
+            found[going] = np.minimum(found[going], (self.room[going] - gap).max(axis=1))
+            left = found[going] > CLOSED
+            if programme == FEW_PROGRAMMES or not left.any():
+                break
+            going, gap, slope = going[left], gap[left], slope[left]
+            step, _, _ = _farthest(-slope, gap, still[going], self.bound[going])
+            pose[going] += step / self.lever[going]
+        return found
 
     def farthest(self, sense: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the poses of the farthest wheel angles in these senses, and the overlap of parts there, mm."""

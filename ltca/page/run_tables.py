@@ -12,7 +12,7 @@ import numpy as np
 from ltca.analysis.extremes import is_full_turn
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import FRICTION_ROWS, rows_of, with_residual_part
-from ltca.analysis.transmission_error_orders import known_orders
+from ltca.analysis.transmission_error_orders import NAMED_HARMONICS, fitted_orders
 from ltca.arrays import FloatArray
 from ltca.drive.fields import field_kind
 from ltca.drive.materials import Material
@@ -87,7 +87,9 @@ def orders_table(dataset: Labelled, drives: Mapping[str, Drive]) -> Table | None
     chosen = np.sort(np.argsort(-largest, kind="stable")[:ORDERS_SHOWN])
     drive = next(iter(drives.values()))
     names = {
-        round(one.value): one.name for one in known_orders(drive) if abs(one.value - round(one.value)) < ORDER_TOLERANCE
+        round(one.value): one.name
+        for one in fitted_orders(drive, harmonics=NAMED_HARMONICS)
+        if abs(one.value - round(one.value)) < ORDER_TOLERANCE
     }
     rows = [
         [

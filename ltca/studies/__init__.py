@@ -5,6 +5,7 @@ Modules in the order data passes:
 ===============  ============================================================
 quantities       What a study keeps of each sample: scalars over its positions, by the names of the summary without their
                  units
+bound_samples    Which samples bind, by their geometry alone
 batch_analysis   The quantities of many drives at once; a sample that cannot be solved says why and stops nobody else
 designs          Which samples a study has: every design gives the numbers of any range of samples without the ones before
 study            A study: drive, design, positions and quantities, everything a worker needs to solve any batch of it

@@ -10,7 +10,7 @@ import numpy as np
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine
 from ltca.analysis.half_width_guard import check_half_widths
 from ltca.analysis.loaded_analysis import require_preload
-from ltca.arrays import FloatArray, batch_layout, stack_drives, take_positions
+from ltca.arrays import BoolArray, FloatArray, batch_layout, stack_drives, take_positions
 from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
@@ -25,6 +25,7 @@ from ltca.geometry.coordinates import WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash
 from ltca.geometry.pairs import ContactGeometry
 from ltca.geometry.play import free_play
+from ltca.studies.bound_samples import samples_that_bind
 from ltca.studies.quantities import STAGES, SampleBatch, evaluate, require_quantities
 from ltca.studies.shapes import with_kept_coefficients
 
@@ -73,6 +74,8 @@ class BatchSettings:
         How bodies yield; one that takes no batches is asked for one drive at a time.
     nominal : Nominal or None
         Starting poses of the samples that it suits; by default every sample starts from first contact.
+    counts_binding : bool
+        Whether it is told which samples bind.
 
     Raises
     ------
@@ -84,6 +87,7 @@ class BatchSettings:
     quantities: tuple[str, ...]
     engine: Engine = field(default_factory=HalfSpace)
     nominal: Nominal | None = None
+    counts_binding: bool = False
 
     def __post_init__(self) -> None:
         """Refuse methods other than tables."""
@@ -104,10 +108,13 @@ class SampleResults:
         Units of `ltca.studies.quantities`; not a number where the sample failed.
     messages : tuple of str
         Why each sample failed, empty where it did not.
+    binds : array of bool, shape (samples,)
+        Which bind (`ltca.studies.bound_samples`); none where it was not asked for, or the sample failed.
     """
 
     values: FloatArray
     messages: tuple[str, ...]
+    binds: BoolArray
 
 
 def solve_nominal(drive: Drive, settings: BatchSettings) -> Nominal:
@@ -162,7 +169,8 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     settings : BatchSettings
         Angles, quantities, engine.
     """
-    values = np.full((len(drives), len(settings.quantities)), np.nan)
+    kept = len(settings.quantities)
+    values = np.full((len(drives), kept + 1), np.nan)  # the last column: 1 where the sample binds
     messages = [""] * len(drives)
     groups: dict[Hashable, list[int]] = {}
     drives = [warm_drive(drive) for drive in drives]
@@ -180,7 +188,7 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
         groups.setdefault(key, []).append(number)
     for members in groups.values():
         _solve_group(drives, models, members, settings, values, messages)
-    return SampleResults(values=values, messages=tuple(messages))
+    return SampleResults(values=values[:, :kept], messages=tuple(messages), binds=values[:, kept] > 0.0)
 
 
 def _solve_group(
@@ -213,7 +221,10 @@ def _quantities(
     drives: list[Drive], settings: BatchSettings, nominal: Nominal | None, models: Sequence[Reducer] | None
 ) -> FloatArray:
     batch = solve_batch(drives, settings, nominal, models)
-    return np.stack([evaluate(name, batch) for name in settings.quantities], axis=1)
+    bound = np.zeros(batch.samples)
+    if settings.counts_binding:
+        bound = samples_that_bind(batch.model, batch.drives, batch.full.crank_angle).astype(float)
+    return np.stack([*(evaluate(name, batch) for name in settings.quantities), bound], axis=1)
 
 
 def solve_batch(

@@ -6,7 +6,7 @@ unless the drive is preloaded as drawn, without any deviation.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
 
@@ -23,14 +23,12 @@ from ltca.geometry.coordinates import RIGID
 from ltca.geometry.interference import FLANK, HOLES, ROLLERS, drawn_plays
 from ltca.geometry.pairs import ContactGeometry
 from ltca.reading.changes import with_fields
+from ltca.studies.bound_samples import NO_BACKLASH
 from ltca.studies.designs import ToleranceDesign
 from ltca.studies.study import Study
 from ltca.studies.yields import Kept, independent_samples, interval
 
 LEAST, LARGEST = "min_backlash_output", "max_backlash_output"
-NO_BACKLASH = 1e-3
-"""Backlash at the output that counts as none, arcmin. A choice: a hundred times the gain at which the search for the free play
-ends (`ltca.geometry.play.LEAST_GAIN`, some 1e-5 arcmin), and a thousandth of the unit that backlashes are stated in."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -40,9 +38,9 @@ class Binding:
     Attributes
     ----------
     each : array of bool, shape (samples,)
-        By sample; none where the study lacks the least backlash at the output.
+        By sample; none where the study did not count them.
     counted : Kept or None
-        Those among the independent samples; None where the study lacks the least backlash at the output.
+        Those among the independent samples; None where the study did not count them.
     preloaded : bool
         Whether parts of the drive without deviations overlap as drawn: then samples bind as they are meant to.
     wide : str
@@ -70,24 +68,27 @@ class Binding:
         }
 
     def words(self) -> list[str]:
-        """Messages about samples that bind, one sentence each; empty where none does or may."""
+        """Messages about samples that bind, one sentence each; empty where none does or may by its tolerances."""
         advice = f"[limits] {LEAST} in the drive file judges them"
         if self.counted is None:
             message = (
                 f"samples may bind, {self.wide}: name {LEAST} among --quantities, which counts those that do; {advice}"
             )
             return [message] if self.wide and not self.preloaded else []
-        if not self.counted.kept:
-            return []
         bound = self.counted
         share = f"{100.0 * bound.part:.1f} % ({100.0 * bound.low:.1f} … {100.0 * bound.high:.1f} %)"
+        if not bound.kept:
+            found = f"none of {bound.samples} samples binds, without backlash at some position: {share}"
+            return [found] if self.wide and not self.preloaded else []
         count = f"{bound.kept} of {bound.samples} samples bind, without backlash at some position: {share}"
         if self.preloaded:
             return [f"{count}; parts of the drive overlap as drawn, so they count as samples that keep their limits"]
         return [f"{count}; they keep no limit of the backlash{'' if self.asked else f'; {advice}'}"]
 
 
-def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | None:
+def find_binding(
+    study: Study, values: Mapping[str, FloatArray], binds: NDArray[np.bool_] | None = None
+) -> Binding | None:
     """Return which samples of a study bind; None of sweeps, whose samples are no chance.
 
     Parameters
@@ -96,17 +97,21 @@ def find_binding(study: Study, values: Mapping[str, FloatArray]) -> Binding | No
         The study.
     values : mapping of str to array, shape (samples,)
         Its quantities; not a number where a sample failed.
+    binds : array of bool, shape (samples,), optional
+        Which samples bind, of a study that keeps it; it serves where the study lacks the least backlash at the output.
     """
     if not isinstance(study.design, ToleranceDesign):
         return None
     least = values.get(LEAST)  # the largest is zero only where parts overlap at every position
-    each = np.zeros(study.design.samples, dtype=bool) if least is None else least <= NO_BACKLASH
+    each = binds if least is None else least <= NO_BACKLASH
+    is_counted = each is not None
+    if each is None:
+        each = np.zeros(study.design.samples, dtype=bool)
     chosen = independent_samples(study.design)
-    # What rollers have or lack between their races holds no output.
-    plays = {what: play for what, play in drawn_plays(warm_drive(study.cases[0][1])).items() if what != ROLLERS}
+    plays = _plays(study.cases[0][1])
     return Binding(
         each=each,
-        counted=None if least is None else interval(int(each[chosen].sum()), int(chosen.sum())),
+        counted=interval(int(each[chosen].sum()), int(chosen.sum())) if is_counted else None,
         preloaded=min(plays.values()) < 0.0,
         wide=_wide_tolerances(study.cases[0][1], study.design, plays),
         asked=any(one.quantity == LEAST for one in study.judged),
@@ -122,16 +127,37 @@ CRANK_ANGLE = 1.0
 """Angle at which gaps are compared, rad: any at which no part stands on an axis of symmetry."""
 
 
-def _wide_tolerances(drive: Drive, design: ToleranceDesign, plays: Mapping[str, float]) -> str:
-    """The widest tolerance of a length, as wide as those of prints, beyond the play where it acts; empty where none is."""
-    factors = design.factors
-    wide: list[tuple[float, str, str]] = []
-    first = 0
+def _plays(drive: Drive) -> dict[str, float]:
+    """Drawn plays of the pairs that hold the output, mm: what rollers have or lack between their races holds none."""
+    return {what: play for what, play in drawn_plays(warm_drive(drive)).items() if what != ROLLERS}
+
+
+def may_bind(drive: Drive, design: ToleranceDesign) -> bool:
+    """Tell whether samples are to be counted that bind: parts move as drawn, and a tolerance as wide as prints moves a gap."""
+    if min(_plays(drive).values()) < 0.0:
+        return False
+    return any(
+        tolerance >= FINEST_PRINT and pairs_that_a_length_moves(drive, path, centres)
+        for path, tolerance, centres in _lengths(design)
+    )
+
+
+def _lengths(design: ToleranceDesign) -> Iterator[tuple[str, float, FloatArray]]:
+    """Yield the lengths that scatter: field, tolerance and centres, mm."""
+    factors, first = design.factors, 0
     for (path, count), distribution in zip(factors.fields, factors.distributions, strict=True):
         centres = np.array(factors.centres[first : first + (count or 1)])
         first += centres.size
-        kind, tolerance = field_kind(path), distribution.tolerance
-        if kind is None or kind.unit != "mm" or tolerance < max(FINEST_PRINT, min(plays.values())):
+        kind = field_kind(path)
+        if kind is not None and kind.unit == "mm":
+            yield path, distribution.tolerance, centres
+
+
+def _wide_tolerances(drive: Drive, design: ToleranceDesign, plays: Mapping[str, float]) -> str:
+    """The widest tolerance of a length, as wide as those of prints, beyond the play where it acts; empty where none is."""
+    wide: list[tuple[float, str, str]] = []
+    for path, tolerance, centres in _lengths(design):
+        if tolerance < max(FINEST_PRINT, min(plays.values())):
             continue
         pairs = [pair for pair in pairs_that_a_length_moves(drive, path, centres) if tolerance >= plays[pair]]
         if pairs:

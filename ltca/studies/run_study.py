@@ -22,7 +22,14 @@ from ltca.studies.execution.workers import Workers, solve_batches
 from ltca.studies.sensitivity import rank
 from ltca.studies.shapes import find_beforehand, find_rings_beforehand
 from ltca.studies.study import Study
-from ltca.studies.study_results import PERCENTILES, QuantitySummary, read_failures, read_quantity, summarise_quantity
+from ltca.studies.study_results import (
+    PERCENTILES,
+    QuantitySummary,
+    read_binds,
+    read_failures,
+    read_quantity,
+    summarise_quantity,
+)
 from ltca.studies.yields import Yield, find_yield
 
 
@@ -112,7 +119,7 @@ def run_study(
         summary = summarise_quantity(each)
         if summary is not None:
             quantities[name] = summary
-    binding = find_binding(study, values)
+    binding = find_binding(study, values, read_binds(folder.results) if study.counts_binding else None)
     without_play = None if binding is None else binding.keeps_no_limit
     found = StudySummary(
         quantities=quantities,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ltca.analysis.engines import Engine, HalfSpace
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.drive.engine_support import shown, unit_of
 from ltca.drive.fields import whose, with_whose
 from ltca.drive.members.limits import Limits
@@ -66,6 +66,8 @@ class Study:
         All of the drive file, which are pointed out where they look like numbers in another unit.
     batch_positions : int
         Positions solved together; 0 for what suits the engine.
+    counts_binding : bool
+        Whether it is kept which samples bind, by the geometry alone.
     """
 
     name: str
@@ -81,6 +83,7 @@ class Study:
     not_judged: dict[str, str] = field(default_factory=dict)
     limits: Limits = field(default_factory=dict)
     batch_positions: int = 0
+    counts_binding: bool = False
 
     def __post_init__(self) -> None:
         """Let the coefficients of the cases serve samples of nearly their bodies."""
@@ -91,7 +94,10 @@ class Study:
     def settings(self) -> BatchSettings:
         """How its samples are analysed, each from first contact."""
         return BatchSettings(
-            crank_angle=position_angles(self.positions), quantities=self.quantities, engine=self.engine
+            crank_angle=position_angles(self.positions),
+            quantities=self.quantities,
+            engine=self.engine,
+            counts_binding=self.counts_binding,
         )
 
     @property
@@ -104,6 +110,13 @@ class Study:
     def batches(self) -> int:
         """Number of batches."""
         return -(-self.design.samples // self.batch_samples)
+
+    @property
+    def sampled_words(self) -> str:
+        """How its values are found, beside those of a run."""
+        if self.positions == 1:
+            return "values at one position"
+        return f"values over {self.positions} sampled positions of a turn, not refined between them as those of cyclo run are"
 
     def load_words(self) -> str:
         """Return torque and direction of its drives for the heading of a table."""
@@ -139,6 +152,7 @@ class Study:
             coefficients_identity(self.engine),
             code_hash("ltca"),
             self.batch_samples,
+            *(["binding"] if self.counts_binding else []),
         )
         return hashlib.sha256(repr(parts).encode()).hexdigest()[:16]
 
@@ -202,12 +216,15 @@ class BatchResult:
         Not a number where the sample failed.
     messages : tuple of str
         Why each sample failed, empty where it did not.
+    binds : array of bool, shape (samples,), or None
+        Which bind; None where the study does not keep it.
     """
 
     number: int
     factors: FloatArray
     values: FloatArray
     messages: tuple[str, ...]
+    binds: BoolArray | None = None
 
 
 _NOMINAL: dict[str, Nominal | None] = {}
@@ -242,10 +259,18 @@ def run_batch(study: Study, number: int) -> BatchResult:
             messages[place] = str(error)
     solved = analyse_samples(drives, _settings(study))
     values[sound] = solved.values
+    binds = np.zeros(len(factors), dtype=bool)
+    binds[sound] = solved.binds
     for place, message in zip(sound, solved.messages, strict=True):
         messages[place] = message
     told = tuple(_about_the_factor(study.design, row, message) for row, message in zip(factors, messages, strict=True))
-    return BatchResult(number=number, factors=factors, values=values, messages=told)
+    return BatchResult(
+        number=number,
+        factors=factors,
+        values=values,
+        messages=told,
+        binds=binds if study.counts_binding else None,
+    )
 
 
 def _about_the_factor(design: Design, row: FloatArray, message: str) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ltca.arrays import FloatArray
+from ltca.arrays import BoolArray, FloatArray
 from ltca.drive.fields import field_kind, with_whose
 from ltca.errors import DamagedFileError, one_line
 from ltca.output.netcdf import DAMAGE, netcdf_stream, require_known_schema, require_sound_netcdf
@@ -27,6 +27,9 @@ from ltca.studies.study import BatchResult, Study
 CHUNK = 4096
 """Samples written and read together."""
 PERCENTILES = (0.1, 1.0, 5.0, 50.0, 95.0, 99.0, 99.9)
+
+BINDS = "binds"
+BINDS_WORDS = "1 where the sample has no backlash at the output at some position, as parts overlap there in every pose"
 
 Failures = list[tuple[int, str]]
 """Failed samples and why."""
@@ -50,6 +53,11 @@ def write_results(study: Study, samples: Iterable[BatchResult], dataset: Path, t
             pa.field("sample", pa.int64(), metadata={"units": "1", "description": "number of the sample, from 0"}),
             *(pa.field(name, pa.float64(), metadata=of) for name, of in zip(names, described, strict=True)),
             *(pa.field(name, pa.float64(), metadata=quantity_column(name)) for name in study.quantities),
+            *(
+                [pa.field(BINDS, pa.int8(), metadata={"units": "1", "description": BINDS_WORDS})]
+                if study.counts_binding
+                else []
+            ),
             pa.field("message", pa.string(), metadata={"units": "", "description": "why it failed, else empty"}),
         ],
         metadata={name: str(value) for name, value in attributes.items()},
@@ -72,6 +80,9 @@ def write_results(study: Study, samples: Iterable[BatchResult], dataset: Path, t
         drawn.attrs["long_name"] = "value of each factor, in its unit (factor_units); of a text its level"
         failed = file.create_variable("failed", ("sample",), dtype="i1")
         failed.attrs["long_name"] = "1 where the sample failed; its quantities are no numbers then"
+        bound = file.create_variable(BINDS, ("sample",), dtype="i1") if study.counts_binding else None
+        if bound is not None:
+            bound.attrs["long_name"] = BINDS_WORDS
         columns = [file.create_variable(name, ("sample",), dtype="f8") for name in study.quantities]
         for column, name in zip(columns, study.quantities, strict=True):
             column.attrs.update({"units": SCALARS[name].unit, "long_name": SCALARS[name].title})
@@ -83,6 +94,9 @@ def write_results(study: Study, samples: Iterable[BatchResult], dataset: Path, t
                 column[rows] = values
             stream.check()
             arrays = [pa.array(column) for column in (np.arange(first, rows.stop), *part.factors.T, *part.values.T)]
+            if bound is not None and part.binds is not None:
+                bound[rows] = part.binds.astype("i1")
+                arrays.append(pa.array(part.binds.astype("i1")))
             writer.write_table(pa.Table.from_arrays([*arrays, pa.array(part.messages)], schema=schema))
             failures += [(first + place, message) for place, message in enumerate(part.messages) if message]
             first = rows.stop
@@ -167,6 +181,12 @@ def read_failures(path: Path) -> Failures:
         reasons = file.variables["failure_message"][...]
         texts = [reason.decode() if isinstance(reason, bytes) else str(reason) for reason in reasons]
         return list(zip(numbers, texts, strict=True))
+
+
+def read_binds(path: Path) -> BoolArray:
+    """Return which samples bind, of a study that keeps it (`Study.counts_binding`)."""
+    with opened_results(path) as file:
+        return np.asarray(file.variables[BINDS][...], dtype=bool)
 
 
 def read_quantity(path: Path, name: str) -> FloatArray:

@@ -8,7 +8,7 @@ from ltca.analysis.engines import Engine, engine_of
 from ltca.drive.tolerances import Factors
 from ltca.errors import DriveError
 from ltca.reading.drive_file import DriveFile
-from ltca.studies.binding import LARGEST, LEAST
+from ltca.studies.binding import LARGEST, LEAST, may_bind
 from ltca.studies.designs import FEWEST_BLOCKS, ToleranceDesign
 from ltca.studies.quantities import check_quantities, quantities_for
 from ltca.studies.study import Study
@@ -40,7 +40,8 @@ def tolerance_study(
         See `ltca.studies.designs.ToleranceDesign`.
     quantities : tuple of str, optional
         What is kept; by default as `ltca.studies.quantities.quantities_for` says, and what has a limit. The least
-        backlash at the output always comes with the largest.
+        backlash at the output always comes with the largest; where tolerances are as wide as those of prints, samples that
+        bind are counted without it.
     engine : Engine, optional
         How bodies yield; half-spaces by default.
 
@@ -90,4 +91,5 @@ def tolerance_study(
         judged=judged,
         not_judged=not_judged,
         limits=file.limits.get(name, {}),
+        counts_binding=LEAST not in kept and may_bind(drive, design),
     )

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ltca.analysis.memory_need import positions_together
-from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, known_orders, named_orders
+from ltca.analysis.transmission_error_orders import Order, Spectrum, fit_several, fitted_orders, named_orders
 from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 from ltca.drive.units.quantities import ARCMIN
@@ -144,25 +144,8 @@ def wind_up(drive: Drive, model: Reducer, largest: float, advance: Callable[[int
 
 
 def wind_up_orders(drive: Drive) -> tuple[Order, ...]:
-    """Return the orders that are fitted: `known_orders`, and with rollers that pass flank and holes, ascending.
-
-    Rollers bend the same contacts as the flank and the holes, so that sums and differences of their orders show as well; those
-    less than an order apart from others over all turns are left out, since positions could not tell them apart.
-    """
-    found, turns = list(known_orders(drive, harmonics=HARMONICS)), drive.pin_wheel.number_of_pins
-    passage = next((order.value for order in found if order.name.startswith("roller passage, 1 ")), 0.0)
-    orders: list[Order] = []
-    beside = [(multiple * drive.disc.number_of_teeth, f"{multiple} z_C") for multiple in (1, 2)]
-    if holes := drive.number_of_holes:
-        beside.append((holes, "z_PS"))
-        orders.append(Order(float((HARMONICS + 1) * holes), f"pin holes, {HARMONICS + 1} z_PS"))
-    for value, name in beside:
-        orders.append(Order(abs(value - passage), f"rollers past {name}, difference"))
-        orders.append(Order(value + passage, f"rollers past {name}, sum"))
-    for order in orders:
-        if all(abs(order.value - other) * turns > 0.99 for other in (0.0, *(one.value for one in found))):
-            found.append(order)
-    return tuple(sorted(found))
+    """Return the orders that are fitted, named as `cyclo curves` names them."""
+    return fitted_orders(drive, harmonics=HARMONICS)
 
 
 def scattered_angles(drive: Drive, orders: int, by_unknown: int = POSITIONS_PER_UNKNOWN) -> FloatArray:

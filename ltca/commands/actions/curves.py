@@ -101,7 +101,10 @@ def _sections(every: Mapping[str, DriveCurves]) -> list[Section]:
         for name, found in every.items()
     }
     return [
-        torque_section({name: found.curve for name, found in every.items()}),
+        torque_section(
+            {name: found.curve for name, found in every.items()},
+            {name: found.backlash_words for name, found in every.items()},
+        ),
         *parts_section({name: found.parts for name, found in every.items() if found.parts is not None}),
         orders_section(
             {name: found.spectrum.resolved() for name, found in every.items()},

@@ -124,6 +124,7 @@ def _print(
     if found.solved_positions:
         rate = found.solved_positions / found.seconds
         print(f"solved in {found.seconds:.1f} s, {rate:.0f} positions/s")
+    print(study.sampled_words)
     if (one := values_of_one_factor(study)) is not None:
         print(_value_table(*one, values))
     else:

@@ -26,8 +26,8 @@ FALLING = "falling"
 """Behind the name of a case: the curve with friction on its way back."""
 
 
-def torque_section(curves: Mapping[str, TorqueCurve]) -> Section:
-    """Return wind-up over torque of all cases in one plot, and what is read from it."""
+def torque_section(curves: Mapping[str, TorqueCurve], backlashes: Mapping[str, str] | None = None) -> Section:
+    """Return wind-up over torque of all cases in one plot, and what is read from it; `backlashes` in words, by case."""
     # Curves at single crank angles lie on each other; the table has how far they differ.
     lines, dashed = dict[str, tuple[FloatArray, FloatArray]](), list[str]()
     for case, curve in curves.items():
@@ -45,13 +45,16 @@ def torque_section(curves: Mapping[str, TorqueCurve]) -> Section:
         lines={name: _over(x, torque, np.mean(angle, axis=0) * ARCMIN) for name, (torque, angle) in lines.items()},
         along=plane.x, up=plane.y, dashed=dashed,
     )  # fmt: skip
-    each = [_torque_rows(curve) for curve in curves.values()]
+    each = [_torque_rows(curve, (backlashes or {}).get(case, "")) for case, curve in curves.items()]
     titles = list(dict.fromkeys(title for rows in each for title in rows))
     rows = [[word(title), *(word(one.get(title, NOTHING)) for one in each)] for title in titles]
     heads = ["over the crank angles"] if len(curves) == 1 else list(curves)
     table = Table(name="torque_curve", caption="", columns=["", *heads], rows=rows)
     angles = {curve.crank_angle.size for curve in curves.values()}
-    told = f"Means of {' or '.join(map(str, sorted(angles)))} crank angles; the table has the range over them."
+    told = (
+        f"Means of {' or '.join(map(str, sorted(angles)))} crank angles; the table has the range sampled there, if nothing else "
+        "is said."
+    )
     whose = stiffness_notes({name: curve.yielding for name, curve in curves.items()})
     if any(curve.displaced for curve in curves.values()):
         whose.append(f"{UNDER_FORCES[0].upper()}{UNDER_FORCES[1:]}.")
@@ -69,9 +72,9 @@ def _over(x: FloatArray, torque: FloatArray, angle: FloatArray) -> FloatArray:
     return np.asarray(np.interp(x, torque[order], angle[order], np.nan, np.nan))
 
 
-def _torque_rows(curve: TorqueCurve) -> dict[str, str]:
+def _torque_rows(curve: TorqueCurve, backlash: str) -> dict[str, str]:
+    title = SCALARS["backlash_output"].verdict_title
     rows = {
-        f"{SCALARS['backlash_output'].verdict_title}, ′": curve.backlash * ARCMIN,
         f"lost motion at ±{100.0 * curve.lost_motion_part:g} % of the torque, ′": curve.lost_motion * ARCMIN,
         "torsional stiffness of the cycloid stage, 50 … 100 % of the torque, N·m/′": curve.stiffness / ARCMIN / 1e3,
         "torsional stiffness of the reducer with what the file describes, N·m/′": curve.reducer_stiffness
@@ -81,7 +84,8 @@ def _torque_rows(curve: TorqueCurve) -> dict[str, str]:
     if curve.loop is not None:
         rows["width of the loop of friction there, ′"] = curve.loop.width * ARCMIN
         rows["energy lost in a loop at the torque, J"] = curve.loop.energy / 1e3
-    return {title: _range(values) for title, values in rows.items()}
+    first = minus(backlash) or f"{_range(curve.backlash * ARCMIN)}′"
+    return {title: first} | {title: _range(values) for title, values in rows.items()}
 
 
 def parts_section(parts: Mapping[str, StiffnessByPart]) -> list[Section]:

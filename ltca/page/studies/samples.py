@@ -50,6 +50,7 @@ def values_of_one_factor(study: Study) -> tuple[str, list[str]] | None:
 def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatArray]) -> StudyPage:
     """Return the page of a study; `values` of every quantity have shape (samples,), not a number where a sample failed."""
     binding = [] if found.binding is None else [f"{one[0].upper()}{one[1:]}." for one in found.binding.words()]
+    sampled = f"{study.sampled_words[0].upper()}{study.sampled_words[1:]}."
     sections = [_yield_section(found.judged, binding)] if found.judged is not None else []
     if binding and not sections:
         sections.append(Section(heading="Samples that bind", notes=binding))
@@ -58,9 +59,9 @@ def samples_page(study: Study, found: StudySummary, values: Mapping[str, FloatAr
     else:
         sections.append(_distributions(study, found, values))
     if (one := values_of_one_factor(study)) is not None:
-        sections.append(_one_row_a_value(*one, values))
+        sections.append(_one_row_a_value(*one, values, sampled))
     else:
-        sections += [_statistics(found), *_ranking(study, found)]
+        sections += [_statistics(found, sampled), *_ranking(study, found)]
     failures = [[word(str(sample)), word(as_sentences(message))] for sample, message in found.failures]
     if failures:
         table = Table(name="failures", caption="", columns=["sample", "reason"], rows=failures[:MOST_FAILURES], words=1)
@@ -116,7 +117,7 @@ def _yield_section(found: Yield, binding: list[str]) -> Section:
     return Section(heading="Yield", notes=[told, *binding], tables=[table, *others])
 
 
-def _statistics(found: StudySummary) -> Section:
+def _statistics(found: StudySummary, sampled: str) -> Section:
     heads = ["", "nominal", "mean", "standard deviation", *(f"{part:g} %" for part in PERCENTILES), "largest", "sample"]
     rows = [
         [
@@ -130,16 +131,18 @@ def _statistics(found: StudySummary) -> Section:
         ]
         for name, each in found.quantities.items()
     ]
-    return Section(heading="Over all samples", tables=[Table(name="quantities", caption="", columns=heads, rows=rows)])
+    table = Table(name="quantities", caption="", columns=heads, rows=rows)
+    return Section(heading="Over all samples", notes=[sampled], tables=[table])
 
 
-def _one_row_a_value(title: str, values: Sequence[str], quantities: Mapping[str, FloatArray]) -> Section:
+def _one_row_a_value(title: str, values: Sequence[str], quantities: Mapping[str, FloatArray], sampled: str) -> Section:
     rows = [
         [word(value), *(number(float(each[row]), "{:.4g}") for each in quantities.values())]
         for row, value in enumerate(values)
     ]
     columns = [title, *(SCALARS[name].heading for name in quantities)]
-    return Section(heading="Values", tables=[Table(name="values", caption="", columns=columns, rows=rows)])
+    table = Table(name="values", caption="", columns=columns, rows=rows)
+    return Section(heading="Values", notes=[sampled], tables=[table])
 
 
 def _distributions(study: Study, found: StudySummary, values: Mapping[str, FloatArray]) -> Section:

@@ -165,6 +165,9 @@ class StudyFolder:
                     factors=np.concatenate([batch.factors for batch in waiting]),
                     values=np.concatenate([batch.values for batch in waiting]),
                     messages=tuple(message for batch in waiting for message in batch.messages),
+                    binds=np.concatenate([batch.binds for batch in waiting if batch.binds is not None])
+                    if study.counts_binding
+                    else None,
                 )
                 waiting = []
 
@@ -193,6 +196,7 @@ def write_batch(path: Path, study: Study, result: BatchResult) -> None:
         "values": result.values,
         "messages": np.array(result.messages, dtype=str),
         "fingerprint": np.array(study.fingerprint),
+        **({} if result.binds is None else {"binds": result.binds}),
     }
     write_arrays(path, content)
 
@@ -208,6 +212,7 @@ def read_batch(path: Path, study: Study) -> BatchResult:
             factors=factors,
             values=values,
             messages=tuple(str(text) for text in messages.tolist()),
+            binds=arrays["binds"] if study.counts_binding else None,
         )
     except DAMAGE as error:
         raise DamagedFileError(f"{path}: cannot be read as {kind}: {one_line(error)}") from error
@@ -216,6 +221,7 @@ def read_batch(path: Path, study: Study) -> BatchResult:
     if f"{result.number:08d}" != path.stem or not 0 <= result.number < study.batches:
         raise DamagedFileError(f"{path}: is batch {result.number} of the study")
     first, last = study.samples_of(result.number)
-    if not len(result.factors) == len(result.values) == len(result.messages) == last - first:
+    binds = result.messages if result.binds is None else result.binds
+    if not len(result.factors) == len(result.values) == len(result.messages) == len(binds) == last - first:
         raise DamagedFileError(f"{path}: has not the {last - first} samples of its number")
     return result

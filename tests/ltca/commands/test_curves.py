@@ -64,7 +64,7 @@ def test_torque_curve_is_printed_as_it_is_kept(told):
     text, content, *_ = told
     kept = content["torque_curve"]
     for name, values in (
-        ("backlash at the wheel, all clearances", np.array(kept["backlash_rad"]) * ARCMIN),
+        ("backlash at the wheel, all clearances", np.array(kept["backlash_over_a_turn_rad"]) * ARCMIN),
         (r"lost motion at ±3 % of the rated torque", np.array(kept["lost_motion_rad"]) * ARCMIN),
         # N·mm/rad to N·m for each arc minute
         (r"stiffness of the cycloid stage, 50…100 %", np.array(kept["stiffness_N_mm_per_rad"]) / ARCMIN / 1000.0),
@@ -239,7 +239,7 @@ def make_coarse(monkeypatch):
     monkeypatch.setattr(torque_curve, "CURVE_ANGLES", 1)
     monkeypatch.setattr(curves, "POSITIONS_PER_TURN", 44)
     monkeypatch.setattr(
-        curves, "known_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
+        curves, "fitted_orders", lambda drive, harmonics: (orders.Order(8.0, "a"), orders.Order(13.0, "b"))
     )
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from refusals import error_says
 
@@ -11,7 +13,11 @@ import ltca
 from ltca.analysis import drive_curves, torque_curve
 from ltca.analysis.transmission_error_orders import Order
 from ltca.commands.program import main
+from ltca.drive.single_discs import single_discs
+from ltca.drive.units.quantities import ARCMIN
 from ltca.errors import DriveError
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import play_over_a_turn
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 FILE = load_drive("paper")
@@ -21,7 +27,7 @@ FILE = load_drive("paper")
 def test_they_are_the_curves_of_the_command(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(torque_curve, "CURVE_ANGLES", 1)
     monkeypatch.setattr(drive_curves, "POSITIONS_PER_TURN", 44)
-    monkeypatch.setattr(drive_curves, "known_orders", lambda drive, harmonics: (Order(8.0, "a"), Order(13.0, "b")))
+    monkeypatch.setattr(drive_curves, "fitted_orders", lambda drive, harmonics: (Order(8.0, "a"), Order(13.0, "b")))
     words = ["--turns", "1", "--speed", "1500 rpm", "--pressure-limit", "1.2 GPa", "--lost-motion", "5 %"]
     out = tmp_path / "out"
     assert main(["curves", "paper", "--case", "CS-6", "--no-page", "--out", str(out), *words]) == 0
@@ -35,6 +41,20 @@ def test_they_are_the_curves_of_the_command(monkeypatch, tmp_path, capsys):
     assert printed.startswith(repr(found))
     alone = ltca.curves(FILE.cases["CS-6"], 1, **options)
     assert alone.content == found.content
+
+
+def test_the_backlash_of_curves_was_that_of_four_angles_without_a_word():
+    """24.54 … 24.83′ stood in `curves` beside 24.35 … 25.22′ in `run`: those of four angles over one mesh."""
+    drive = FILE.cases["CS-6"]
+    curve = SimpleNamespace(backlash=np.array([1.0, 2.0]) / ARCMIN, crank_angle=np.zeros(2))
+    kept = {"engine": None, "settings": None, "turns": 1, "positions": 2, "spectrum": None, "lives": None}
+    kept |= {"crank_angle": None, "pressure": None, "safety": None}
+    found = drive_curves.DriveCurves(drive=drive, curve=curve, play=drive_curves._play_over_a_turn(drive), **kept)
+    turn = play_over_a_turn([ContactGeometry.of_drive(single) for single in single_discs(drive)])
+    low, high = (abs(drive.output_per_wheel_angle) * ARCMIN * one for one in (turn.least, turn.largest))
+    assert found.backlash_words == f"{low:.4g} … {high:.4g}′, sampled over a turn"
+    alone = drive_curves.DriveCurves(drive=drive, curve=curve, **kept)
+    assert alone.backlash_words == "1 … 2′, sampled at 2 crank angles over one mesh"
 
 
 def test_limits_of_the_file_judge_the_pressure(monkeypatch):
@@ -57,7 +77,7 @@ def test_limits_of_the_file_judge_the_pressure(monkeypatch):
     ("options", "message"),
     [
         ({"turns": 0}, "turns = 0: must be a whole number from 1 to 1000"),
-        ({"turns": 1}, "turns = 1: must be at least 4, or 60 orders of the transmission error look alike"),
+        ({"turns": 1}, "turns = 1: must be at least 4, or 66 orders of the transmission error look alike"),
         ({"speed": "3 mm"}, "speed = '3 mm': must have the unit rpm"),
         ({"speed": 0}, "speed = 0: must be greater than 0 rpm"),
         ({"lost_motion": "60 %"}, "lost_motion = '60 %': must be at least 0.001 and at most 0.5"),

@@ -9,16 +9,24 @@ import numpy as np
 import pytest
 
 from ltca.analysis.engines import HalfSpace
+from ltca.commands.actions.study import _print
 from ltca.commands.program import main
 from ltca.drive.fields import read_field
+from ltca.drive.single_discs import single_discs
 from ltca.geometry.interference import FLANK, HOLES
+from ltca.geometry.pairs import ContactGeometry
+from ltca.geometry.play import CLOSED, free_play, least_overlap
 from ltca.page.studies.samples import samples_page
 from ltca.page.study_page import study_page
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive, parse_drive
 from ltca.studies.binding import LARGEST, LEAST, find_binding, pairs_that_a_length_moves
-from ltca.studies.run_study import StudySummary
-from ltca.studies.study_results import summarise_quantity
+from ltca.studies.bound_samples import NO_BACKLASH
+from ltca.studies.execution.storage import StudyFolder
+from ltca.studies.execution.workers import Workers
+from ltca.studies.run_study import StudySummary, run_study
+from ltca.studies.study import run_batch
+from ltca.studies.study_results import read_binds, summarise_quantity
 from ltca.studies.tolerance_study import tolerance_study
 from ltca.studies.yields import find_yield
 from ltca.testing.field_changes import change_of
@@ -123,12 +131,66 @@ def test_a_tolerance_of_wheel_pins_is_compared_with_the_play_of_the_flank():
     assert "pin_errors.radial of ±0.08 mm is beyond the play of wheel pins and flank, 0.06 mm" in message
 
 
-def test_nothing_is_said_where_no_sample_binds():
+def test_no_sample_that_binds_is_said_of_wide_tolerances_alone():
     study = study_of(toolkit())
     moving = {name: np.full(6, 20.0) for name in VALUES}
     found = summary_of(study, moving)
-    assert found.binding.words() == []
+    assert found.binding.words() == ["none of 6 samples binds, without backlash at some position: 0.0 % (0.0 … 45.9 %)"]
     assert found.binding.counted.kept == 0
+    fine = study_of(toolkit(tolerances=TOLERANCES.replace("0.08", "0.02")))
+    assert summary_of(fine, moving).binding.words() == []
+
+
+def test_samples_that_bind_were_counted_where_the_backlash_was_asked_for_alone(tmp_path, capsys):
+    """`samples may bind: name min_backlash_output among --quantities` stood where printed tolerances let 3 of 40 bind."""
+    tolerances = TOLERANCES.split("[limits]", maxsplit=1)[0].replace("0.08", "0.05")
+    file = toolkit(offset=0.06, tolerances=tolerances)
+    study = tolerance_study(file, samples=12, positions=3, quantities=("max_pin_load",), engine=HalfSpace())
+    assert study.counts_binding
+    assert study.quantities == ("max_pin_load",)
+    found = run_study(study, StudyFolder(path=tmp_path / "out"), Workers())
+    asked = tolerance_study(file, samples=12, positions=3, quantities=(LEAST,), engine=HalfSpace())
+    assert not asked.counts_binding
+    least = run_batch(asked, 0).values[:, 0]
+    assert 0 < found.binding.counted.kept < 12
+    np.testing.assert_array_equal(found.binding.each, least <= NO_BACKLASH)
+    np.testing.assert_array_equal(read_binds(tmp_path / "out" / "results.nc"), found.binding.each)
+    (told,) = found.binding.words()
+    assert f"{found.binding.counted.kept} of 12 samples bind" in told
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["binding"]["binding"] == found.binding.counted.kept
+
+
+def test_what_prints_cannot_make_bind_is_not_counted():
+    asked = ("max_pin_load",)
+    assert study_of(toolkit(), quantities=asked).counts_binding
+    assert not study_of(toolkit(tolerances=TOLERANCES.replace("0.08", "0.02")), quantities=asked).counts_binding
+    assert not study_of(toolkit(offset=-0.01), quantities=asked).counts_binding  # preloaded as it is meant to be
+    thick = '[tolerances]\ndisc.thickness = { distribution = "uniform", tolerance = 0.2 }\n'
+    assert not study_of(toolkit(tolerances=thick), quantities=asked).counts_binding
+
+
+@pytest.mark.parametrize("pin", [0.0, 0.04, 0.08])
+def test_poses_without_overlap_are_found_where_the_play_says_so(pin):
+    """One pin in and its neighbours out by more than the play: a few programmes against the free play."""
+    drive = toolkit(tolerances="").cases["nominal"]
+    pins = drive.pin_wheel.number_of_pins
+    errors = [0.0, pin, -pin, pin] + [0.0] * (pins - 4)
+    drive = with_fields(drive, {"pin_wheel.pin_errors.radial": tuple(errors)}, check=False)
+    discs = [ContactGeometry.of_drive(single) for single in single_discs(drive)]
+    angle = np.linspace(0.0, 6.0, 5)
+    np.testing.assert_array_equal(least_overlap(discs, angle) > CLOSED, free_play(discs, angle).preloaded)
+
+
+def test_a_nominal_column_did_not_say_that_it_is_sampled(tmp_path, capsys):
+    """The transmission error of a drive was 178″ by `cyclo run` and 154″ in the nominal column of `cyclo tolerance`."""
+    study = study_of(toolkit(), quantities=("max_pin_load",))
+    values = {"max_pin_load": np.ones(6)}
+    found = summary_of(study, values)
+    words = "over 2 sampled positions of a turn, not refined between them as those of cyclo run are"
+    assert words in study_page(samples_page(study, found, values))
+    _print(study, StudyFolder(path=tmp_path), found, values, "")
+    assert words in capsys.readouterr().out
 
 
 @pytest.mark.slow
