@@ -35,7 +35,7 @@ def test_it_is_what_the_command_writes(tmp_path):
     ("options", "message"),
     [
         ({"turns": 0}, "turns = 0: must be a whole number from 1 to 1000"),
-        ({"turns": 1}, "turns = 1: must be at least 4, or 60 orders of the transmission error look alike"),
+        ({"turns": 1}, "turns = 1: must be at least 4, or 66 orders of the transmission error look alike"),
         ({"positions": 3}, "positions = 3: must be a whole number from 4 to 1000"),
         ({"speed": "3 mm"}, "speed = '3 mm': must have the unit rpm"),
         ({"speed": 0}, "speed = 0: must be greater than 0 rpm"),
