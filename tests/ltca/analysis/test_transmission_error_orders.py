@@ -165,8 +165,8 @@ def test_printed_orders_of_four_turns_are_sums_of_those_not_told_apart(tmp_path,
     values = sorted(float(value) for value, _ in rows)
     assert min(np.diff(values)) > 0.25
     kept = json.loads((tmp_path / "out" / "curves.json").read_text(encoding="utf-8"))["transmission_error_orders"]
-    # c = 0.398 of the cage: 22 · 0.602 / 2 = 6.622, nearer than a quarter to 6.5 = 7 · 13/14
-    assert any(entry["orders"] == pytest.approx([6.5, 6.6224], abs=1e-4) for entry in kept["not_told_apart"])
+    # c = 0.398 of the cage: 22 · 0.602 / 2 = 6.622, nearer than a quarter to 6.5 = 7 · 13/14, as 13 − 6.622 is
+    assert any(entry["orders"] == pytest.approx([6.3776, 6.5, 6.6224], abs=1e-4) for entry in kept["not_told_apart"])
 
 
 def test_too_few_turns_are_refused_with_the_least_before_the_work(tmp_path, capsys):
