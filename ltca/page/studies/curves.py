@@ -198,7 +198,7 @@ def pressure_section(turns: Mapping[str, TurnOfPressure]) -> Section:
         ]
         for case, safety in zip(turns, found, strict=True)
     ]  # fmt: skip
-    columns = ["case", "largest, MPa", "limit, MPa", "safety"]
+    columns = ["case", "largest sampled, MPa", "limit, MPa", "safety"]
     table = Table(name="flank_pressure", caption="", columns=columns, rows=rows)
     return Section(heading="Flank pressure", curves=[plot], tables=[table])
 
