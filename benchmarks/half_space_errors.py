@@ -1,6 +1,6 @@
 """How far half-spaces are off on the shipped drives: ``python benchmarks/half_space_errors.py``, some minutes of derivations.
 
-Prints for each the ratio of half-space to hybrid in what decides, beside the ratio that is told of a half-space analysis
+Prints for each case the ratio of half-space to hybrid in what decides, beside the ratio that is told of a half-space analysis
 (`ltca.analysis.half_space_errors`); ``--write`` replaces those.
 """
 
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from math import nan
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not the benchmark of that name
 
 from ltca.analysis.engines import Engine, HalfSpace, Hybrid
-from ltca.analysis.half_space_errors import MEASURED, body_fingerprint, likeness, measured
+from ltca.analysis.half_space_errors import MEASURED, likeness, measured, measured_with
 from ltca.analysis.life.bearing_lives import bearing_lives
 from ltca.analysis.loaded_analysis import analyse
 from ltca.analysis.summary import summarise
@@ -61,19 +62,26 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.write and arguments.drive:
         parser.error("--write replaces the ratios of all drives: leave --drive out")
-    lines = ["# Half-space by hybrid, first case of each shipped drive: python benchmarks/half_space_errors.py --write"]
+    lines = ["# Half-space by hybrid, all cases of the shipped drives: python benchmarks/half_space_errors.py --write"]
     known = measured() if MEASURED.exists() else {}
     for name in arguments.drive or SHIPPED_DRIVES:
-        drive = next(iter(load_drive(name).cases.values()))
-        engines: tuple[Engine, ...] = (HalfSpace(), Hybrid().with_coefficients(drive))
-        first, second = (decisive(drive, engine, arguments.positions) for engine in engines)
-        found = {key: value / second[key] for key, value in first.items() if second[key]}
-        for key, value in found.items():
-            told = known.get(name, {}).get("ratio", {}).get(key, float("nan"))
-            print(f"{name:<12} {key:<20} {value:.3f}  told {told:.3f}", flush=True)
-        lines += ["", f"[{name}]", f'bodies = "{body_fingerprint(drive)}"']
-        lines += ["", f"[{name}.ratio]", *(f"{key} = {value:.3f}" for key, value in found.items())]
-        lines += ["", f"[{name}.likeness]", *(f"{key} = {value:.6g}" for key, value in likeness(drive).items())]
+        cases = load_drive(name).cases
+        numbers = likeness(next(iter(cases.values())))
+        lines += ["", f"[{name}.likeness]", *(f"{key} = {value:.6g}" for key, value in numbers.items())]
+        for case, drive in cases.items():
+            engines: tuple[Engine, ...] = (HalfSpace(), Hybrid().with_coefficients(drive))
+            first, second = (decisive(drive, engine, arguments.positions) for engine in engines)
+            found = {key: value / second[key] for key, value in first.items() if second[key]}
+            reported = known.get(name, {}).get("cases", {}).get(case, {}).get("ratio", {})
+            for key, value in found.items():
+                print(f"{name:<12} {case:<8} {key:<20} {value:.3f}  told {reported.get(key, nan):.3f}", flush=True)
+            ratios = ", ".join(f"{key} = {value:.3f}" for key, value in found.items())
+            lines += [
+                "",
+                f"[{name}.cases.{case}]",
+                f'measured_with = "{measured_with(drive)}"',
+                f"ratio = {{ {ratios} }}",
+            ]
     if arguments.write:
         MEASURED.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

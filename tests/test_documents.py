@@ -77,6 +77,16 @@ def test_set_up_lines_are_those_of_the_ci():
     ]
 
 
+def test_getting_started_called_what_its_line_installs_everything():
+    """`cyclo studio`, which the page leads to, needs an extra."""
+    page = (ROOT / "docs" / "start" / "index.md").read_text(encoding="utf-8")
+    assert "installs everything" not in page
+    installed = page[page.index("\n## Installation") : page.index("\n## Write a drive file")]
+    assert "`cyclo studio`" in installed
+    assert "pip install --editable '.[studio]'" in installed
+    assert "`.[studio]`" in page[page.index("\n## Turn numbers and look") :]
+
+
 def test_the_ci_ends_with_the_test_line_in_a_fresh_clone_with_nothing_beside_it():
     """It ran where every extra and both referees were installed, so what fails on a new machine stayed green."""
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")

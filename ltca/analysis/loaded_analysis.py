@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ltca.analysis.engines import Engine, HalfSpace, PreparedEngine, lent_words
 from ltca.analysis.friction.losses import Losses, losses
-from ltca.analysis.half_space_errors import half_space_words
+from ltca.analysis.half_space_errors import at_torque, half_space_words
 from ltca.analysis.half_width_guard import (
     check_half_widths,
     displacement_warning,
@@ -231,7 +231,8 @@ class LoadedAnalysis:
     @property
     def engine_words(self) -> str:
         """What to know of the engine: why half-spaces, and how far off they are, or whose coefficients it uses; else empty."""
-        return half_space_words(self.engine, self.drive) or lent_words(self.engine, self.drive)
+        loaded = at_torque(self.as_written, self.torque)
+        return half_space_words(self.engine, loaded) or lent_words(self.engine, self.drive)
 
     @property
     def torque_share(self) -> FloatArray:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import shlex
 from pathlib import Path
 
 from ltca.errors import CycloError, DriveError, shortened
@@ -36,6 +35,7 @@ def execute(arguments: argparse.Namespace) -> int:
     """Write the file."""
     from ltca.drive.names import NAMING, names_a_file
     from ltca.output.files import whole_file
+    from ltca.output.terminal import shell_words
     from ltca.reading.drive_file import shipped_drive
 
     path: Path = arguments.file
@@ -51,6 +51,6 @@ def execute(arguments: argparse.Namespace) -> int:
     text = shipped_drive(arguments.like).replace(f'name = "{arguments.like}"', own, 1)
     with whole_file(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
-    word = shlex.quote(str(path))
-    print(f"{path}: written; 'cyclo show {word}' checks it, 'cyclo run {word}' analyses it")
+    word = shell_words([str(path)])
+    print(f"{path}: written; to check it:\n  cyclo show {word}\nto analyse it:\n  cyclo run {word}")
     return 0

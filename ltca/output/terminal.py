@@ -5,7 +5,9 @@ from __future__ import annotations
 import codecs
 import io
 import os
+import shlex
 import sys
+from collections.abc import Iterable
 
 PLAIN = {
     "′": "'", "″": '"', "’": "'", "“": '"', "”": '"', "°": " deg", "µ": "u", "μ": "u", "·": " ", "…": "...", "×": "x",
@@ -15,6 +17,21 @@ PLAIN = {
 }  # fmt: skip
 """What is printed where an encoding has no such sign."""
 HANDLER = "cyclo-plain"
+
+
+def shell_words(words: Iterable[str], system: str = os.name) -> str:
+    """Return words of a command as they are typed, in quotes where a shell would split or read them.
+
+    Examples
+    --------
+    >>> shell_words(["my.toml"]), shell_words(["my drive.toml"], "posix"), shell_words(["my drive.toml"], "nt")
+    ('my.toml', "'my drive.toml'", '"my drive.toml"')
+    """
+    if system != "nt":
+        return shlex.join(words)
+    from subprocess import list2cmdline
+
+    return list2cmdline(words)
 
 
 def _replace(error: UnicodeError) -> tuple[str | bytes, int]:

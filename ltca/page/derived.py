@@ -57,11 +57,11 @@ def _properties(drive: Drive, plays: bool) -> Rows:
         ("disc radius at root, tip", f"{profile.root_radius:.4f}, {profile.tip_radius:.4f} mm"),
         ("smallest flank radius, convex", f"{1.0 / curvature.max():.4f} mm"),
         ("smallest flank radius, concave", f"{-1.0 / curvature.min():.4f} mm"),
-        ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:.4f} mm"),
+        ("pin radius at which the flank is undercut", f"{1.0 / locus.max() - drive.disc.equidistant_offset:z.4f} mm"),
         *(_plays(drive, geometries, abs(drive.output_per_wheel_angle) * ARCMIN) if plays else []),
         (f"bore radius{of} with clearance", f"{single.bore_radius:.4f} mm"),
-        (f"play of a roller{of} between the races", f"{roller_play:.4f} mm"),
-        ("gap between neighbouring rollers", f"{roller_gap(drive):.4f} mm"),
+        (f"play of a roller{of} between the races", f"{roller_play:z.4f} mm"),
+        ("gap between neighbouring rollers", f"{roller_gap(drive):z.4f} mm"),
         *_bought(drive),
         *_walls(single, of),
         ("mean tangential bearing load of a disc", f"{tangential:.1f} N"),
@@ -79,8 +79,8 @@ def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> 
     )
     at, held = ("the disc", "disc") if len(geometries) == 1 else ("disc 0", "discs")
     return [
-        ("gap between pins and flank, nominal position", f"{gap.min():.4f} … {gap.max():.4f} mm"),
-        *([(SCALARS["interference"].verdict_title, f"{overlap:.4f} mm, {parts}")] if parts else []),
+        ("gap between pins and flank, nominal position", f"{gap.min():z.4f} … {gap.max():z.4f} mm"),
+        *([(SCALARS["interference"].verdict_title, f"{overlap:z.4f} mm, {parts}")] if parts else []),
         (
             SCALARS["backlash_output"].verdict_title,
             ", ".join(
@@ -95,11 +95,11 @@ def _plays(drive: Drive, geometries: list[ContactGeometry], leverage: float) -> 
         ),
         (
             f"flank: backlash at {at}, wheel held",
-            f"{disc.mean():.2f}′ ({disc.min():.2f}′ … {disc.max():.2f}′)",
+            f"{disc.mean():z.2f}′ ({disc.min():z.2f}′ … {disc.max():z.2f}′)",
         ),
         (
             f"flank: backlash at the wheel, {held} held",
-            f"{wheel.mean():.2f}′ ({wheel.min():.2f}′ … {wheel.max():.2f}′)",
+            f"{wheel.mean():z.2f}′ ({wheel.min():z.2f}′ … {wheel.max():z.2f}′)",
         ),
     ]
 
@@ -132,7 +132,7 @@ def _walls(single: Drive, of: str) -> Rows:
     rows, found = [], dict(walls(single))
 
     def both(first: str, second: str) -> str:
-        return f"{found[first]:.4f}, {found[second]:.4f} mm"
+        return f"{found[first]:z.4f}, {found[second]:z.4f} mm"
 
     if single.pin_shaft is not None:
         rows += [
@@ -168,7 +168,7 @@ def _installation(drive: Drive) -> Rows:
     pattern = "hole pitches" if crank.number == 1 else f"{360.0 / drive.pattern:g}°"
     alike = f"can be equal parts, turned against each other by {pattern}"
     if not equal_parts(drive):
-        turns = ", ".join(f"{degrees(single.part_turn[0]):.4f}°" for single in single_discs(drive))
+        turns = ", ".join(f"{degrees(single.part_turn[0]):z.4f}°" for single in single_discs(drive))
         against = "holes" if crank.number == 1 else "bores"
         alike = f"cannot be equal parts: flanks are cut at {turns} against their {against}"
     return [
@@ -195,7 +195,7 @@ def _teeth(drive: Drive) -> Rows:
         ),
         (
             "forces of a planet",
-            f"working pressure angle {degrees(mesh.working_angle):.4g}°; radial {mesh.separating:.4f}, axial "
+            f"working pressure angle {degrees(mesh.working_angle):.4g}°; radial {mesh.separating:z.4f}, axial "
             f"{abs(mesh.axial):.4f} of the tangential force",
         ),
         ("backlash and stiffness of the first stage", f"{stage.backlash:g} mm at the pitch circle, {yields}"),
@@ -329,13 +329,11 @@ def _seat(part: PinWheel | PinShaft, pins: str, seen_from: str) -> Rows:
     rows = [(f"{pins}, seen from {seen_from}", f"as fixed ones of radius {part.pin_radius - part.seat_play:.4f} mm")]
     if seat.kind == "sleeve":
         bore = seat.bore_radius or 0.0
-        told = (
-            f"radius {seat.pin_radius:.4f} mm, under sleeves of bore radius {bore:.4f} mm, play {part.seat_play:.4f} mm"
-        )
+        told = f"radius {seat.pin_radius:.4f} mm, under sleeves of bore radius {bore:.4f} mm, play {part.seat_play:z.4f} mm"
         return [(pins, told), (f"wall of the sleeves on {pins}", _wall(part.pin_radius - bore, bore)), *rows]
     radius = part.pin_radius + part.seat_play
-    return [(pins, f"loose in slots of radius {radius:.4f} mm, play {part.seat_play:.4f} mm"), *rows]
+    return [(pins, f"loose in slots of radius {radius:.4f} mm, play {part.seat_play:z.4f} mm"), *rows]
 
 
 def _wall(wall: float, bore: float) -> str:
-    return f"{wall:.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN_WALL * bore else "")
+    return f"{wall:z.4f} mm" + (", thin: it yields more than its contacts alone say" if wall < THIN_WALL * bore else "")

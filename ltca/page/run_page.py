@@ -11,7 +11,7 @@ import numpy as np
 
 from ltca.analysis.engines import Engine, describe_engine
 from ltca.analysis.friction.losses import KINDS
-from ltca.analysis.half_space_errors import half_space_cautions
+from ltca.analysis.half_space_errors import at_torque, half_space_cautions
 from ltca.analysis.life.bearing_lives import BearingLives
 from ltca.analysis.summary import refined_value
 from ltca.analysis.summary_rows import rows_of, with_residual_part
@@ -102,6 +102,7 @@ def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
     dataset, cases = run.dataset, list(run.drives)
     name, positions = str(dataset.attrs["drive"]), dataset.sizes["position"]
     loads = [drive.load_words(_torque(dataset, place)) for place, drive in enumerate(drives.values())]
+    loaded = {name: at_torque(drive, _torque(dataset, place)) for place, (name, drive) in enumerate(run.drives.items())}
     shown = shown_positions(dataset)
     sentence, state = verdict_of(run.checks)
     unjudged = [case for case in cases if case not in run.checks]
@@ -120,7 +121,7 @@ def answer_context(run: Run, drives: Mapping[str, Drive]) -> dict[str, Any]:
         "version": dataset.attrs["version"],
         "sentence": sentence,
         "state": state,
-        "caution": "; ".join(half_space_cautions(run.engine, run.drives)),
+        "caution": "; ".join(half_space_cautions(run.engine, loaded)),
         "verdicts": verdict_tables(run.checks),
         "summary": summary_tables(drives, run.summaries),
         "orders": orders_table(dataset, drives),

@@ -24,6 +24,8 @@ ELASTIC = "a tenth of the smallest pin or roller radius, beyond what bodies yiel
 """Bound of overlaps in words: bodies strained by a tenth are no longer linear-elastic; sharper limits need a load."""
 MOST_HOLE_PLAY = 1.5
 """Largest difference of hole and pin radius, by the eccentricity, at which the pins still lead the disc."""
+ROUND_FLANK = 0.1
+"""Least convex radius of a flank that is suggested, by that of the pins: with less, contacts are wider than the flank goes on."""
 POINTS_PER_WAVE = 24
 """Points at which the flank is checked, per wave of the highest order."""
 
@@ -71,7 +73,9 @@ def _flank(drive: Drive) -> Iterator[Problem]:
             smallest_radius - disc.equidistant_offset,
             " (smallest radius of the pin-centre path on its convex side less the equidistant offset)",
         )
-        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, "the flank is undercut")
+        rounder = rounded_down((smallest_radius - disc.equidistant_offset) / (1.0 + ROUND_FLANK))
+        otherwise = f"the flank is undercut{_rounder_words(drive, ('pin_wheel.pin_radius', rounder))}"
+        yield _or_eccentricity_and_hole(drive, "pin_wheel.pin_radius", of_pins, otherwise)
     if profile.root_radius <= 0.0:
         yield Problem.of(
             "pin_wheel.pin_circle_radius",
@@ -90,21 +94,25 @@ def _flank(drive: Drive) -> Iterator[Problem]:
         )
 
 
-def largest_eccentricity(drive: Drive) -> float:
+def largest_eccentricity(drive: Drive, least_radius: float = 0.0) -> float:
     """Return the largest eccentricity at which the flank of a drive has neither loops nor an undercut, mm; 0 without any.
+
+    `least_radius` is the radius that the flank keeps on its convex side, mm; with none it comes to an edge there.
 
     The pin circle and the pins are those of the drive: the path of the pin centres over the disc may bend on its convex side
     no more than the equidistant to it (pin radius and equidistant offset) allows. It bends the more the larger the eccentricity.
     """
     return _last_sound(
-        lambda e: _has_plain_flank(drive, drive.pin_wheel.pin_circle_radius, e), drive.crank.eccentricity
+        lambda e: _has_plain_flank(drive, drive.pin_wheel.pin_circle_radius, e, least_radius), drive.crank.eccentricity
     )
 
 
-def _smallest_pin_circle(drive: Drive) -> float:
+def _smallest_pin_circle(drive: Drive, least_radius: float = 0.0) -> float:
     """Smallest radius of the pin circle at which the flank has neither loops nor an undercut, mm; infinite without any."""
     most = _last_sound(
-        lambda part: _has_plain_flank(drive, drive.pin_wheel.pin_circle_radius / part, drive.crank.eccentricity)
+        lambda part: _has_plain_flank(
+            drive, drive.pin_wheel.pin_circle_radius / part, drive.crank.eccentricity, least_radius
+        )
     )
     return drive.pin_wheel.pin_circle_radius / most if most > 0.0 else float("inf")
 
@@ -118,13 +126,13 @@ def _last_sound(is_sound: Callable[[float], bool], wrong: float = 1.0) -> float:
     return sound
 
 
-def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float) -> bool:
-    """Tell whether the flank on another pin circle, with another eccentricity, has neither loops nor an undercut."""
+def _has_plain_flank(drive: Drive, pin_circle_radius: float, eccentricity: float, least_radius: float) -> bool:
+    """Tell whether the flank on another pin circle, with another eccentricity, is rounder than a radius all along."""
     shifted = pin_circle_radius + drive.disc.shifting_offset
     if _crosses_itself(pin_circle_radius, shifted, eccentricity * drive.reduction_ratio):
         return False
     offset = drive.pin_wheel.pin_radius + drive.disc.equidistant_offset
-    return _smallest_path_radius(shifted, eccentricity, drive.reduction_ratio) > offset
+    return _smallest_path_radius(shifted, eccentricity, drive.reduction_ratio) > offset + least_radius
 
 
 def has_loops(drive: Drive) -> bool:
@@ -144,9 +152,27 @@ def _loops(drive: Drive) -> Problem:
     """Message about a flank with loops: bounds of eccentricity and pin circle, and the hole radius that goes with them."""
     most, circle = rounded_down(largest_eccentricity(drive)), _smallest_pin_circle(drive)
     bounds = {"crank.eccentricity": Bound("at most", most, _with_hole(drive, most))}
+    rounder = "pin_wheel.pin_circle_radius", _rounded_up(_smallest_pin_circle(drive, _round(drive)))
     if isfinite(circle):
-        bounds["pin_wheel.pin_circle_radius"] = Bound("at least", -rounded_down(-circle))
-    return bounded(drive, bounds, "the flank has loops")
+        bounds["pin_wheel.pin_circle_radius"] = Bound("at least", _rounded_up(circle))
+    return bounded(drive, bounds, f"the flank has loops{_rounder_words(drive, rounder)}")
+
+
+def _round(drive: Drive) -> float:
+    """Convex radius of a flank that contacts find room on, mm."""
+    return ROUND_FLANK * drive.pin_wheel.pin_radius
+
+
+def _rounder_words(drive: Drive, other: tuple[str, float]) -> str:
+    """Eccentricity, or value of another field, that leave the flank a radius: at its bounds it comes to an edge."""
+    path, value = other
+    eccentricity = rounded_down(largest_eccentricity(drive, _round(drive)))
+    values = [f"crank.eccentricity = {eccentricity:.6g} mm{_with_hole(drive, eccentricity)}"] if eccentricity else []
+    values += [f"{path} = {value:.6g} mm"] if isfinite(value) and value > 0.0 else []
+    if not values:
+        return ""
+    values_words = " or ".join(values)
+    return f"; there the flank comes to an edge, {values_words} leaves a radius, {ROUND_FLANK:g} of that of the pins"
 
 
 def hole_that_fits(drive: Drive, eccentricity: float) -> float:
@@ -193,6 +219,11 @@ def rounded_down(value: float) -> float:
         return 0.0
     step = 10.0 ** (floor(log10(abs(value))) - 3)
     return floor(value / step + 1e-6) * step
+
+
+def _rounded_up(value: float) -> float:
+    """Return a number rounded up to its fourth digit, so that a bound from below stays one; infinite as it is."""
+    return -rounded_down(-value) if isfinite(value) else value
 
 
 def _smallest_path_radius(radius: float, eccentricity: float, ratio: float) -> float:

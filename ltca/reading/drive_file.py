@@ -18,6 +18,7 @@ from ltca.drive.names import NAMING, names_a_file
 from ltca.drive.parts import Drive
 from ltca.drive.tolerances import Tolerances, find_absent, parse_tolerances
 from ltca.errors import DriveError, Problem, did_you_mean, shortened
+from ltca.output.terminal import shell_words
 from ltca.reading.arguments import SHIPPED_DRIVES
 from ltca.reading.bearing_names import BearingNames
 from ltca.reading.changes import INSTEAD
@@ -159,7 +160,7 @@ def load_drive(source: str | Path) -> DriveFile:
     path = Path(source)
     hint = (
         f"no such file; give a TOML file or a shipped drive, {', '.join(SHIPPED_DRIVES)}{did_you_mean(name, SHIPPED_DRIVES)} "
-        f"('cyclo init {path.name}' writes a drive to start from)"
+        f"(to write a drive to start from: cyclo init {shell_words([path.name])})"
     )
     return parse_drive(read_text(path, hint), name)
 

@@ -23,6 +23,7 @@ from ltca.errors import CycloError, DriveError, FaultError, printable, shortened
 from ltca.output.file_names import file_word
 from ltca.output.files import whole_file
 from ltca.output.processes import Supervised
+from ltca.output.terminal import shell_words
 from ltca.reading.toml_edit import tables_of, with_values
 from ltca.studio.sections import listed, measured_files
 
@@ -229,7 +230,7 @@ class Jobs:
         lines = _last_lines(job.folder / LOG)
         return {
             "number": job.number,
-            "command": f"cyclo {' '.join(job.words)}",
+            "command": f"cyclo {shell_words(job.words)}",
             "state": state,
             "seconds": round(time.monotonic() - job.began if job.took is None else job.took),
             "lines": lines,

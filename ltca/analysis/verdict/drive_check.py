@@ -112,11 +112,11 @@ class DriveCheck:
             each = self.drivers.get(check.value.quantity, ())
             helping = [driver for driver in each if driver.change]
             lines += [
-                f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+.2f})"
+                f"    {driver.input}: {driver.change} would about do (d ln value/d ln input = {driver.elasticity:+z.2f})"
                 for driver in helping[: 2 * MAX_INPUTS]
             ]
             if each and not helping:
-                named = ", ".join(f"{driver.input} ({driver.elasticity:+.2f})" for driver in each[:MAX_INPUTS])
+                named = ", ".join(f"{driver.input} ({driver.elasticity:+z.2f})" for driver in each[:MAX_INPUTS])
                 lines.append(
                     f"    driven by {named}; no single change by a factor of three mends it and keeps the others"
                 )

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ltca.analysis.engines import Engine, describe_engine
+from ltca.analysis.engines import Engine, describe_engine, lent_words
 from ltca.analysis.extremes import is_full_turn, sampling_warning
-from ltca.analysis.half_space_errors import half_space_cautions
+from ltca.analysis.half_space_errors import at_torque, half_space_cautions, half_space_notes
 from ltca.analysis.life.bearing_lives import BearingLives, bearing_lives
 from ltca.analysis.life.equivalent_load import covers_whole_turns
 from ltca.analysis.light_torque import at_light_torque, light_torque_lines
@@ -119,7 +119,7 @@ def solve_and_write(task: RunTask, out: Path) -> int:
     method, warnings = _method(analyses, summaries, angles), _warnings(analyses, summaries, angles)
     proportions = _proportions(analyses)
     lives = {name: _lives(analysis) for name, analysis in analyses.items()}
-    print(_verdicts(checks, proportions, half_space_cautions(engine, cases)))
+    print(_verdicts(checks, proportions, half_space_cautions(engine, _loaded(analyses))))
     print(run_table(analyses, summaries, lives, loads if others else {}))
     light_torques = light_torque_lines(cases, torque)
     lines = [*whose_stiffness(analyses), *light_torques, *lives_told(lives)]
@@ -243,6 +243,11 @@ def _many(angles: FloatArray) -> str:
     return f"{angles.size} positions" if angles.size > 1 else f"1 position, φ_C = {angles[0]:g} rad"
 
 
+def _loaded(analyses: Analyses) -> dict[str, Drive]:
+    """Drives as written, at the torques that they were analysed at."""
+    return {name: at_torque(one.as_written, one.torque) for name, one in analyses.items()}
+
+
 def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> list[tuple[str, str]]:
     """Method behind the values: names and texts on positions, bodies, width and holes."""
     many = _many(angles)
@@ -255,8 +260,14 @@ def _method(analyses: Analyses, summaries: Summaries, angles: FloatArray) -> lis
     found = {
         row
         for one in analyses.values()
-        for row in (("bodies", one.engine_words), ("width", one.width_words), ("holes", one.hole_words))
+        for row in (
+            ("bodies", lent_words(one.engine, one.drive)),
+            ("width", one.width_words),
+            ("holes", one.hole_words),
+        )
     }
+    engine = next(iter(analyses.values())).engine
+    found |= {("bodies", words) for words in half_space_notes(engine, _loaded(analyses))}
     shares = with_case_names({name: [one.share_words] * bool(one.share_words) for name, one in analyses.items()})
     return [("sampling", sampling), *sorted(row for row in found if row[1]), *(("disc shares", one) for one in shares)]
 

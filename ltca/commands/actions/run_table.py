@@ -6,6 +6,7 @@ What decides a design, in the order in which it is read; page and ``summary.json
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import floor, isfinite, log10
 from shutil import get_terminal_size
 
 from ltca.analysis.life.bearing_lives import BearingLives
@@ -173,8 +174,15 @@ def _stiffness_rows(summaries: Summaries) -> list[tuple[str, list[str]]]:
     }
     for title, name in titles.items():
         values = [case.get(scalar_named(name).key) for case in summaries.values()]
-        rows.append((title, [_number(None if one is None else one / ARCMIN / 1e3, ".2f") for one in values]))
+        shown = [None if one is None else one / ARCMIN / 1e3 for one in values]
+        rows.append((title, [_number(one, f".{_decimals(shown)}f") for one in shown]))
     return rows[: 1 + (rows[0][1] != rows[1][1])]
+
+
+def _decimals(values: Sequence[float | None]) -> int:
+    """Decimals that show at least three digits of each number, and no less than two decimals."""
+    least = min((abs(value) for value in values if value), default=1.0)
+    return max(2, 2 - floor(log10(least))) if isfinite(least) else 2
 
 
 def _number(value: float | None, digits: str, unit: str = "") -> str:

@@ -20,6 +20,7 @@ from ltca.output.processes import Terminated
 from ltca.output.progress import progress
 from ltca.output.resources import require_room
 from ltca.output.run_folder import BATCHES, claimed_folder, figure_files
+from ltca.output.terminal import shell_words
 from ltca.page.studies.samples import samples_page, values_of_one_factor, yield_words
 from ltca.page.study_page import write_study_page
 from ltca.quantities import SCALARS, printed
@@ -134,7 +135,7 @@ def _print(
     if leading is not None:
         summary = found.quantities[leading]
         worst = summary.smallest_sample if SCALARS[leading].more_is_better else summary.largest_sample
-        words = f"{write_sample(study, folder, worst)}{compliance}"
+        words = f"{shell_words([write_sample(study, folder, worst)])}{compliance}"
         print(f"worst by {SCALARS[leading].title}: cyclo run {words}")
     if found.judged is not None:
         _print_yield(found.judged)

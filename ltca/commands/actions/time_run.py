@@ -190,7 +190,7 @@ def _lines(found: TimeRun, title: str) -> list[str]:
         f"{title}, {drive.load_words()}, {describe_engine(found.engine)}: {course.motion} in time, {told}, "
         + (f"damping ratio {content['damping_ratio']:g}" if damped else "no damping (damping.ratio)"),
         *(f"  {words}" for words in [half_space_words(found.engine, drive)] if words),
-        f"  transmission error        {error.min():.4f}″ … {error.max():.4f}″",
+        f"  transmission error        {error.min():z.4f}″ … {error.max():z.4f}″",
         f"  torque at the input       {_metres(content['input_torque_N_mm'])} N·m",
     ]
     lines += [

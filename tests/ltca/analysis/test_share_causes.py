@@ -52,6 +52,32 @@ def test_springs_share_equally_and_nothing_is_said():
     assert share_words(found.drive, np.array([0.7, 0.3])) == ""
 
 
+def test_clearances_and_errors_of_single_discs_were_no_causes():
+    """Shares of 0.10 and 0.90 by a pin-hole clearance of disc 0 had no note; beams and supports alone were named."""
+    drive = case_of(joint(""))
+    loose = drive.with_fields({"disc.of.0.clearance.pin_hole": 0.02})
+    words = share_words(loose, np.array([0.1, 0.9]))
+    assert words == (
+        "the discs carry 0.10, 0.90 of the torque, not equal parts: the pin-hole clearance is 0.005 mm at disc 1 and 0.02 mm at "
+        "disc 0 (disc.of.0.clearance.pin_hole)"
+    )
+    assert share_words(loose, np.array([0.9, 0.1])) == ""  # the looser disc carries more: that is not by its clearance
+    found = analyse(loose, ANGLES, None, HalfSpace())
+    assert found.share_words.partition(": ")[2] == words.partition(": ")[2]
+    bearing = drive.with_fields({"disc.of.1.clearance.bearing": 0.03})
+    said = share_words(bearing, np.array([0.7, 0.3]))
+    assert said.endswith(
+        "the bearing clearance is 0.005 mm at disc 0 and 0.03 mm at disc 1 (disc.of.1.clearance.bearing)"
+    )
+    errors = {"disc.of.0.hole_errors.radial.3": 0.01, "crank.of.1.phase_error": 1e-4}
+    assert share_words(drive.with_fields(errors), np.array([0.7, 0.3])).endswith(
+        "not equal parts: the discs differ in disc.of.N.hole_errors, crank.of.N"
+    )
+    # Errors that are those of both discs make no difference.
+    both = drive.with_fields({"disc.hole_errors.radial.3": 0.01})
+    assert share_words(both, np.array([0.7, 0.3])) == ""
+
+
 @pytest.mark.slow
 def test_show_names_the_cause(tmp_path, capsys):
     path = tmp_path / "joint.toml"

@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+import shlex
 import subprocess
 import sys
 from dataclasses import replace
@@ -319,6 +320,19 @@ def test_init_with_a_name_that_toml_must_escape(tmp_path):
     path = tmp_path / 'my "best" drive.toml'
     assert main(["init", str(path)]) == 0
     assert load_drive(path).name == 'my "best" drive'
+
+
+@pytest.mark.skipif(os.name == "nt", reason="words are in the quotes of another shell")
+@pytest.mark.parametrize("name", ["my.toml", "my drive ö.toml", "it's mine.toml", "$HOME.toml"])
+def test_the_commands_that_init_names_could_not_be_pasted(name, tmp_path, monkeypatch, capsys):
+    """`'cyclo show 'my drive ö.toml''` had quotes in quotes."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", name]) == 0
+    commands = [shlex.split(line) for line in capsys.readouterr().out.splitlines() if line.startswith("  cyclo ")]
+    assert commands == [["cyclo", "show", name], ["cyclo", "run", name]]
+    with pytest.raises(DriveError) as caught:
+        load_drive(f"other {name}")
+    assert f"cyclo init {shlex.quote(f'other {name}')})" in str(caught.value)
 
 
 @pytest.mark.slow

@@ -15,9 +15,11 @@ from ltca.commands.actions.run_table import lives_told, run_table
 from ltca.commands.program import main
 from ltca.drive.members.judgement import Value
 from ltca.drive.members.verdict_words import with_unit
+from ltca.drive.units.quantities import ARCMIN
 from ltca.geometry.placement import position_angles
+from ltca.page.derived import derived_rows
 from ltca.page.tables import number
-from ltca.quantities import printed
+from ltca.quantities import printed, scalar_named
 from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 
 HEADINGS = (
@@ -51,7 +53,7 @@ def test_what_decides_comes_first_and_files_last(tmp_path, capsys):
     assert lines[1].startswith("verdict")
     assert re.match(r"  CS-1  pass  flank pressure 1[34]\d\d MPa \(≤ 1500 MPa\), safety 1\.0\d$", lines[2])
     # How far half-spaces are off, and which way, stood in the last lines without a direction.
-    assert lines[3] == "  half-spaces: about 34 % too stiff here (measured on the shipped drive paper)"
+    assert lines[3] == "  half-spaces: about 34 % too stiff here (measured on the shipped drive paper, case CS-1)"
     found = [next(place for place, line in enumerate(lines) if line.startswith(heading)) for heading in HEADINGS]
     assert found == sorted(found)
     assert found[0] > 2
@@ -146,6 +148,29 @@ def test_nothing_is_printed_as_nothing():
     play = Value(quantity="backlash_output", value=-1.16e-11)
     assert with_unit(play.value, play, 5) == "0′"
     assert number(-1.16e-11, "{:.2f}", "arcmin").text == "0.00′"
+
+
+def test_a_drive_without_offsets_had_plays_of_minus_nothing(paper):
+    """`cyclo show` printed "-0.0000 … 0.0000 mm" and "0.00′ (-0.00′ … 0.00′)"."""
+    plain = paper.with_fields({"disc.equidistant_offset": 0.0, "disc.shifting_offset": 0.0})
+    rows = dict(derived_rows(plain, plain))
+    assert rows["gap between pins and flank, nominal position"] == "0.0000 … 0.0000 mm"
+    assert rows["flank: backlash at the disc, wheel held"] == "0.00′ (0.00′ … 0.00′)"
+    assert not [value for value in rows.values() if re.search(r"-0\.0*(?!\d)", value)]
+
+
+def test_the_stiffness_of_a_small_drive_had_two_digits(answers):
+    """0.27 and 0.25 N·m/′ of a drive of 1 N·m; larger ones have two decimals as before."""
+    _, summaries, lives = answers
+    (case,) = summaries.values()
+    key = scalar_named("cycloid_stage_stiffness").key
+    for sizes, texts in {
+        (0.27123, 0.25): ["0.271", "0.250"], (0.0123456,): ["0.0123"], (5.3619, 61.5): ["5.36", "61.50"], (0.0,): ["0.00"],
+    }.items():  # fmt: skip
+        some = {f"{size}": {**case, key: size * ARCMIN * 1e3} for size in sizes}
+        table = run_table(dict.fromkeys(some, answers[0]["nominal"]), some, dict.fromkeys(some, lives["nominal"]), {})
+        (row,) = (line for line in table.splitlines() if "from light torque" in line)
+        assert row.split()[-len(texts) :] == texts
 
 
 @pytest.mark.slow

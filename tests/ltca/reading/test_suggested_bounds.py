@@ -9,9 +9,11 @@ from unittest.mock import ANY
 import numpy as np
 import pytest
 
+from ltca.analysis.loaded_analysis import analyse
 from ltca.errors import DriveError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.interference import drawn_plays
+from ltca.geometry.placement import position_angles
 from ltca.reading.changes import with_fields
 from ltca.reading.disc_checks import largest_eccentricity, rounded_down
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive
@@ -72,6 +74,25 @@ def test_a_flank_with_loops_names_the_eccentricity_that_has_none():
     smaller = refusal("flank_with_loops", pin_radius=1.0)
     larger = float(suggested(smaller, "at most"))
     assert float(eccentricity) < larger < 50.0 / 50.0
+
+
+@pytest.mark.parametrize("name", ["flank_with_loops"])
+def test_suggested_values_left_the_flank_an_edge(name):
+    """Exactly at the bounds the drive was taken, with contacts wider than the flank goes on."""
+    problem = refusal(name)
+    told = problem.partition("; there the flank comes to an edge, ")[2]
+    eccentricity, hole, circle = re.fullmatch(
+        r"crank\.eccentricity = (\S+) mm \(with pin_shaft\.hole_radius = (\S+) mm\) or "
+        r"pin_wheel\.pin_circle_radius = (\S+) mm leaves a radius, 0\.1 of that of the pins",
+        told,
+    ).groups()
+    for changes in ({"eccentricity": eccentricity, "hole_radius": hole}, {"pin_circle_radius": circle}):
+        drive = public(name, **changes)
+        parameter = np.linspace(0.0, 2.0 * np.pi / drive.reduction_ratio, 20_001)
+        sharpest = 1.0 / FlankProfile.of_drive(drive).curvature(parameter).max()
+        assert sharpest == pytest.approx(0.1 * drive.pin_wheel.pin_radius, rel=0.1)
+        found = analyse(drive, position_angles(4))
+        assert not [line for line in found.warnings if "than the flank goes on" in line]
 
 
 @pytest.mark.parametrize(("pins", "circle", "pin"), [(14, 88.0, 6.5), (50, 50.0, 1.5708), (8, 100.0, 15.0)])
