@@ -31,7 +31,7 @@ LARGEST_DISTANCE = 1.0
 OTHER_PART = 0.3
 """Distance of two drives for each kind of part that yields in one of them only: bending pins, ring, supports."""
 WORDS = {
-    "stiffness": "torsional stiffness",
+    "stiffness": "torsional stiffness at 50 … 100 % of the torque",
     "life": "life of the crank bearing",
     "pin_pressure": "largest flank pressure",
     "roller_pressure": "largest roller pressure",

@@ -110,7 +110,7 @@ def test_first_screen_is_verdict_table_files(tmp_path, capsys):
     for number, line in enumerate(lines[2:8], 1):
         assert re.fullmatch(rf"  CS-{number}  (pass|FAIL)  \S.* \([≤≥] .*\).*", line)
         assert len(line) <= 80
-    assert lines[8].startswith("  half-spaces: about 34 % too stiff here")
+    assert lines[8].startswith("  half-spaces: about 30 … 34 % too stiff here")
     assert lines[11].split() == [f"CS-{number}" for number in range(1, 7)]
     assert lines[-1].startswith("results: ")
     assert not (tmp_path / "figures").exists()
