@@ -1,4 +1,4 @@
-"""How near springs are to the beams that they replace: ``python benchmarks/spring_of_pins.py``, half a minute.
+"""How near springs are to the beams that they replace: ``python benchmarks/spring_of_pins.py``, some minutes.
 
 Torsional stiffness from the light torque on, on half-spaces, with shaft pins as beams and with the ``pin_shaft.stiffness`` that
 `cyclo show` prints for them, of invented drives: pins thick and slender, few and many, with clearance in the holes and without,
@@ -84,7 +84,7 @@ BEAMS = {
     "flank 0.02 mm": pins(3.0, load__torque=90e3, disc__equidistant_offset=0.02),
     "three discs, three pins": pins(3.0, load__torque=60e3, disc__number_of_discs=3, pin_shaft__number_of_pins=3),
 }
-"""Changes of `BASE`; the first nine are those by which a reader found that 10 % was too little."""
+"""Changes of `BASE`; the first nine are those by which 10 % was found to be too little."""
 
 
 def stiffnesses(drive: Drive, angles: FloatArray) -> FloatArray:
@@ -97,11 +97,13 @@ def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--positions", type=int, default=POSITIONS, help=f"of the crank; default {POSITIONS}")
-    angles = position_angles(parser.parse_args().positions)
+    parser.add_argument("--only", choices=BEAMS, metavar="NAME", help="one of the beams")
+    arguments = parser.parse_args()
+    angles = position_angles(arguments.positions)
     (base,) = parse_drive(BASE).cases.values()
     print(f"{'shaft pins':<32}{'spring':>10}  least    mean   told")
-    for name, changes in BEAMS.items():
-        beams = base.with_fields(changes)
+    for name in [arguments.only] if arguments.only else BEAMS:
+        beams = base.with_fields(BEAMS[name])
         spring = shaft_pin_spring(beams)
         assert spring is not None
         springs = beams.with_fields({"pin_shaft.stiffness": spring.stiffness})

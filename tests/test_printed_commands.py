@@ -91,6 +91,7 @@ SMALLER = {
     "benchmarks/solid_cylinder.py": "--size 4 --layers 2",
     "benchmarks/solid_free_ends.py": "--size 8 --cells 6",
     "benchmarks/solid_moves.py": "paper --case CS-1 --positions 1 --plane mine.nc --solid solid.nc",
+    "benchmarks/spring_of_pins.py": "--positions 1 --only free",
     "benchmarks/startup.py": "--runs 1 --only help",
     "benchmarks/studio.py": "--edits 2",
     "benchmarks/study_costs.py": "--quick --joint robot-joint",

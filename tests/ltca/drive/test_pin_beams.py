@@ -168,7 +168,7 @@ def test_show_prints_the_spring_that_pins_are_equal_to():
     spring = shaft_pin_spring(JOINT.with_fields(TIED))
     drive = JOINT.with_fields(TIED)
     row = dict(derived_rows(drive, drive, plays=False))["shaft pins, springs that turn as far"]
-    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm, within some 10 %; ")
+    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm, within some 20 %; ")
     assert "shaft pins, springs that turn as far" not in dict(derived_rows(JOINT, JOINT, plays=False))
 
 

@@ -125,9 +125,8 @@ def test_names_are_texts_whatever_they_contain(paper_run):
 
 def test_how_far_half_spaces_are_off_stands_under_the_verdict_and_rows_are_called_what_they_are(page):
     """It stood at the end of the page, in one of three rows all called "sampling"."""
-    caution = (
-        '<p class="caution">half-spaces: about 31 … 34 % too stiff here (measured on the shipped drive paper)</p>'
-    )
+    where = "the shipped drive paper, at 50 … 100 % of the torque"
+    caution = f'<p class="caution">half-spaces: about 31 … 34 % too stiff here (measured on {where})</p>'
     assert page.count(caution) == 1
     assert page.index('class="verdict') < page.index(caution) < page.index('id="verdict"')
     made = page[page.index('data-name="computed_by"') :]
