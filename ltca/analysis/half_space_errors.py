@@ -31,7 +31,7 @@ LARGEST_DISTANCE = 1.0
 OTHER_PART = 0.3
 """Distance of two drives for each kind of part that yields in one of them only: bending pins, ring, supports."""
 WHERE = "at 50 … 100 % of the torque"
-"""Torques between which the stiffness was measured; from the light torque on the error is another, 38 for 31 % of `paper` CS-6."""
+"""Torques between which the stiffness was measured; from the light torque on it is off by more, 38 for 31 % of `paper` CS-6."""
 WORDS = {
     "stiffness": f"torsional stiffness {WHERE}",
     "life": "life of the crank bearing",
