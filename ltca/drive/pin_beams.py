@@ -30,9 +30,9 @@ from ltca.arrays import FloatArray
 from ltca.beam import End, PinBeam
 from ltca.drive.parts import Drive, contact_modulus
 
-ERROR_TIED, ERROR_FREE = 0.2, 0.25
+ERROR_TIED, ERROR_FREE = 0.2, 0.3
 """Largest errors of the torsional stiffness, least or mean over a turn, with a spring in the place of pins with tied tips, which
-share a load otherwise than by their places, and with free tips of several discs, rounded up: 0.17 and 0.24 of `robot-joint`,
+share a load otherwise than by their places, and with free tips of several discs, rounded up: 0.17 and 0.25 of `robot-joint`,
 `sleeved`, four published drives and invented ones (``benchmarks/spring_of_pins.py``), on half-spaces. With tied tips three pins,
 and slender pins with clearance in their holes under light torques, are off by most; thick ones by some hundredths. With a free
 tip and one disc there is none."""
