@@ -25,6 +25,7 @@ from ltca.front.arguments import angles_given, counted, engine_given, require_dr
 from ltca.geometry.placement import position_angles
 from ltca.output.threads import on_one_thread, one_thread
 from ltca.quantities import SCALARS, printed, unit_sign
+from ltca.reading.arguments import refuse_impossible_torques
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -369,6 +370,7 @@ def analyse(
         crank_angle = position_angles(counted(360 if positions is None else positions, "positions", 1, MOST_POSITIONS))
     angles: Any = angles_given(crank_angle)
     carried = torque_given(drive, torque)
+    refuse_impossible_torques([drive], carried, duty=False)
     name = drive.case if case is None else case
     engine = engine_given(
         drive,

@@ -136,6 +136,8 @@ def _completed(search: Search, left: NDArray[np.intp]) -> Equilibrium:
     if left.size and _is_loose(model):
         left = _from_stops(search, left)
     left = np.array([row for row in left if not creeping(int(row))], dtype=np.intp)
+    if left.size and not _is_loose(model):
+        left = _from_stops(search, left)
     if left.size and not np.all(_below_round_off(search, left)):
         left = _follow_down(search, left)
     if left.size:
@@ -251,12 +253,18 @@ def _most(search: Search) -> int:
     return LOOSE_ITERATIONS if _is_loose(search.model) else MAX_ITERATIONS
 
 
+def poses_at_stops(model: Reducer, angle: FloatArray, moment: FloatArray) -> FloatArray | None:
+    """Return the poses where the wheel stops without load; None where nothing stops it."""
+    try:
+        return loose_poses(model.geometries, angle, np.where(moment < 0.0, -1.0, 1.0))
+    except ConvergenceError:
+        return None
+
+
 def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     """Solve positions from where the wheel stops without load, with all that floats in its bearings; return the others."""
-    sense = np.where(search.moment[rows] < 0.0, -1.0, 1.0)
-    try:
-        pose = loose_poses(search.model.take(rows).geometries, search.angle[rows], sense)
-    except ConvergenceError:
+    pose = poses_at_stops(search.model.take(rows), search.angle[rows], search.moment[rows])
+    if pose is None:
         return rows
     part = _part(search, rows, np.ones(rows.size), pose)
     lost = part.iterate(MAX_ITERATIONS)

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray, put_positions, take_positions
 from ltca.compliance.response import Start
+from ltca.drive.least_torque import least_torque
 from ltca.drive.parts import Drive
-from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, solve_equilibrium
+from ltca.equilibrium.balance import Equilibrium, follow_equilibrium, poses_at_stops, solve_equilibrium
 from ltca.equilibrium.newton import Holding
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
@@ -27,6 +28,9 @@ Balance = Callable[[FloatArray, FloatArray, FloatArray | None], Equilibrium]
 MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
+HARDLY_LOADED = 1e4
+"""Torque by the least one below which the search begins where the wheel stops without load. The less a pin is pressed, the shorter
+are the steps along the curve of the flank that do not lift it off: of a tenth of the play they are a hundred, from first contact."""
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
 """First and least step of the continuation in the strength of friction."""
 JAMMING_LOAD_RATIO = 2.0
@@ -73,6 +77,8 @@ def solve_at_output(
         near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light))
         start, inner = near.pose, Start.after(near.response)
     wanted = OutputTorque.of_drives(drives, loads)
+    if start is None and _hardly_load(drives, loads):
+        start = poses_at_stops(model, angle, wanted.mean)
     friction, moment = model.friction, wanted.mean
     rubs = friction is not None and friction.turns
     if wheel_moment is not None and not rubs:
@@ -103,6 +109,12 @@ def solve_at_output(
             if failure and reached >= lost:  # the step was too long, nothing else
                 step = min(2.0 * step, FIRST_FRICTION_STEP)
         strength = min(reached + step, 1.0)
+
+
+def _hardly_load(drives: Sequence[Drive], loads: FloatArray) -> bool:
+    """Whether all loads press the parts so little that their way through the play would be long."""
+    least = np.repeat([least_torque(drive) for drive in drives], loads.size // len(drives))
+    return bool(np.all(loads < HARDLY_LOADED * least))
 
 
 def _jam(

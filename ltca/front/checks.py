@@ -14,6 +14,7 @@ from ltca.drive.parts import Drive
 from ltca.errors import DriveError, shortened
 from ltca.front.arguments import counted, engine_given, require_drive, torque_given
 from ltca.output.threads import on_one_thread
+from ltca.reading.arguments import refuse_impossible_torques
 from ltca.reading.drive_file import DriveFile, listed
 
 MOST_POSITIONS = 100_000
@@ -84,13 +85,15 @@ def check(
     judged, known = drive_and_limits(drive, case, limits)
     if not isinstance(advice, bool):
         raise DriveError([f"advice = {shortened(advice)}: must be true or false"])
+    asked = torque_given(judged, torque)
+    refuse_impossible_torques([judged], asked, in_parts=True)
     engine = engine_given(judged, compliance, coefficients=coefficients, hole_near_field=hole_near_field, bodies=bodies)
     return check_drive(
         judged,
         known,
         lending_between(drive.cases.values(), engine) if isinstance(drive, DriveFile) else engine,
         positions=counted(positions, "positions", 2, MOST_POSITIONS),
-        torque=torque_given(judged, torque),
+        torque=asked,
         advice=advice,
     )
 

@@ -16,6 +16,7 @@ from ltca.errors import DriveError
 from ltca.front.arguments import counted, engine_given
 from ltca.front.checks import drive_and_limits
 from ltca.output.threads import on_one_thread
+from ltca.reading.arguments import refuse_impossible_torques
 from ltca.reading.drive_file import DriveFile
 
 MOST_TURNS = 1000
@@ -93,6 +94,7 @@ def curves(
     212 N·m/arcmin, order 13: 1.25″
     """
     one, known = drive_and_limits(drive, case, limits)
+    refuse_impossible_torques([one])
     if one.duty and speed is not None:
         raise DriveError(["speed: has no effect with [[duty]], whose entries have their own"])
     rotations = one.pin_wheel.number_of_pins if turns is None else counted(turns, "turns", 1, MOST_TURNS)

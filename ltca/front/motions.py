@@ -12,6 +12,7 @@ from ltca.drive.units.quantities import parse_quantity
 from ltca.errors import DriveError
 from ltca.front.arguments import counted, engine_given, require_drive
 from ltca.output.threads import on_one_thread
+from ltca.reading.arguments import refuse_impossible_torques
 
 MOST_SAMPLES = 1_000_000
 
@@ -94,6 +95,7 @@ def motion(
     True
     """
     require_drive(drive)
+    refuse_impossible_torques([drive])
 
     def given(value: float | str | None, unit: str, name: str) -> float | None:
         return parse_quantity(value, unit, name) if isinstance(value, str) else value

@@ -20,6 +20,7 @@ from ltca.drive.units.quantities import parse_quantity
 from ltca.front.arguments import counted, engine_given
 from ltca.front.checks import drive_and_limits
 from ltca.output.threads import on_one_thread
+from ltca.reading.arguments import refuse_impossible_torques
 from ltca.reading.drive_file import DriveFile
 
 LEAST_POSITIONS, MOST_POSITIONS, MOST_TURNS = 4, 1000, 1000
@@ -144,6 +145,7 @@ def vibration(
     'disc turns (60 %), disc moves along its eccentricity (24 %), wheel pins turn (16 %)'
     """
     one, _ = drive_and_limits(drive, case, None)
+    refuse_impossible_torques([one])
     warm = warm_drive(one)
     if turns is not None:
         require_turns(warm, counted(turns, "turns", 1, MOST_TURNS), "turns")

@@ -15,7 +15,7 @@ from ltca.compliance.response import Start
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.drive.unit_mistakes import explain_failure
+from ltca.drive.unit_mistakes import explain_failure, impossible_torque
 from ltca.equilibrium.balance import Equilibrium
 from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.equilibrium.output_torque import solve_at_output
@@ -177,6 +177,9 @@ def analyse_samples(drives: Sequence[Drive], settings: BatchSettings) -> SampleR
     models: dict[int, Reducer] = {}
     layouts: dict[int, Hashable] = {}
     for number, drive in enumerate(drives):
+        if refused := impossible_torque(drive):
+            messages[number] = refused
+            continue
         try:
             require_quantities(drive, settings.quantities)
             if settings.engine.batches:

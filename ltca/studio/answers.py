@@ -48,6 +48,7 @@ from ltca.page.run_tables import derived_tables
 from ltca.page.tables import minus
 from ltca.page.writing import fragment
 from ltca.quantities import SCALARS, printed, unit_sign
+from ltca.reading.arguments import refuse_impossible_torques
 from ltca.reading.drive_file import DriveFile, parse_drive
 
 COARSE, FINE, DERIVATIVE = "coarse", "fine", "derivative"
@@ -121,6 +122,7 @@ def answer(question: Question, memory: Memory) -> dict[str, Any]:
     try:
         file = parse_drive(question.text, question.source)
         name = question.case if question.case in file.cases else next(iter(file.cases))
+        refuse_impossible_torques([file.cases[name]])
         found = (_derivative if question.quality == DERIVATIVE else _run)(question, memory, file, name)
     except DriveError as error:
         found = {"problems": [problem_of(one) for one in error.problems]}

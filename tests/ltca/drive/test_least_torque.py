@@ -10,6 +10,8 @@ import pytest
 from refusals import error_says, refused_field
 
 import ltca
+from ltca.analysis.engines import HalfSpace
+from ltca.analysis.loaded_analysis import analyse
 from ltca.commands.program import main
 from ltca.drive.declaration import declared_fields
 from ltca.drive.least_torque import least_torque
@@ -62,6 +64,33 @@ def test_a_micro_drive_of_a_millionth_of_a_newton_metre_is_solved(positions_alon
     found = ltca.analyse(small, 4)
     assert np.all(found.dataset["status"].values == 0)
     assert np.all(found.dataset["status_light"].values == 0)
+
+
+@pytest.mark.parametrize("name", ["micro", "tied", "paper", "rv"])
+@pytest.mark.parametrize("factor", [1.0, 10.0, 1000.0])
+def test_a_torque_above_the_stated_bound_had_no_equilibrium_or_took_minutes(name, factor, positions_alone):
+    """A clearance is a million approaches long: from first contact the steps along the flank were too short for it."""
+    drive = drive_of("paper" if name == "tied" else "seven_lobes" if name == "micro" else name)
+    if name == "tied":
+        beam = {"pin_shaft.stiffness": None, "pin_shaft.beam.tip": "tied-clamped"}
+        drive = with_fields(drive, {"materials.disc.youngs_modulus": 3000.0, "clearance.bearing": 0.05} | beam)
+    torque = factor * least_torque(drive)
+    light = with_fields(drive, {"load.torque": torque, "load.light_torque": torque})
+    found = analyse(light, np.array([0.1, 2.3]), engine=HalfSpace())
+    assert np.all(found.balanced)
+    assert np.all(found.full.iterations < 50)
+
+
+def test_shaft_pins_that_are_tied_add_their_stiffness_to_the_round_off():
+    """Thick steel pins in a printed disc had no equilibrium up to ten times the stated bound."""
+    drive = drive_of("paper")
+    tied = with_fields(drive, {"pin_shaft.stiffness": None, "pin_shaft.beam.tip": "tied-clamped"})
+    line = np.pi * 206e3 / (1.0 - 0.3**2) / 2.0 * drive.disc.thickness / 10.0
+    diameter, span = 2.0 * drive.pin_shaft.pin_radius, tied.shaft_pin_span
+    beam = 12.0 * 206e3 * np.pi * diameter**4 / 64.0 / span**3
+    assert least_torque(tied) == pytest.approx((1.0 + beam / line) * least_torque(drive), rel=1e-12)
+    free = with_fields(drive, {"pin_shaft.stiffness": None, "pin_shaft.beam.tip": "free"})
+    assert least_torque(free) == least_torque(drive)
 
 
 @pytest.mark.parametrize(

@@ -102,3 +102,10 @@ def test_a_count_that_others_go_with_has_one_value():
     assert problem.startswith(
         "pin_wheel.number_of_pins = 28: must be 14 for the rest of the drive: disc.number_of_teeth = 13: "
     )
+
+
+def test_a_torque_of_a_sweep_beyond_the_bound_of_a_run_was_searched_for():
+    good, wrong = messages("paper", {"load.torque": [377_300.0, 1e12]})
+    assert good == ""
+    assert wrong.startswith("load.torque = 1e+12 N·mm")
+    assert "must be at most 1.08e+08 N·mm" in wrong

@@ -205,3 +205,13 @@ def test_the_studio_named_an_option_that_it_has_not():
     assert told is not None
     assert told.endswith("values over them alone say little of the turn")
     assert sampling_warning(drive, position_angles(13)).startswith(f"{told}; take --positions ")
+
+
+@pytest.mark.parametrize("quality", [COARSE, FINE, DERIVATIVE])
+@pytest.mark.parametrize("torque", ["1e9", "1e15"])
+def test_a_torque_beyond_the_bound_of_a_run_had_no_answer_in_minutes(quality, torque):
+    text = re.sub(r"(?m)^torque = .*$", f"torque = {torque}", PAPER)
+    found = answer(asked(text, quality, field="crank.eccentricity"), Memory())
+    (problem,) = found["problems"]
+    assert "must be at most 1.08e+08 N·mm" in problem["text"]
+    assert problem["fields"] == ["load.torque"]
