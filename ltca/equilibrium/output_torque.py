@@ -29,8 +29,8 @@ MAX_ITERATIONS = 30
 TORQUE_TOLERANCE = 1e-10
 """Unbalanced moment relative to the output torque; the balance of forces leaves more."""
 HARDLY_LOADED = 1e4
-"""Torque by the least one below which the search begins where the wheel stops without load. The less a pin is pressed, the shorter
-are the steps along the curve of the flank that do not lift it off: of a tenth of the play they are a hundred, from first contact."""
+"""Torque by the least one below which the search begins where the wheel stops without load. The less a pin is pressed, the
+shorter are the steps along the curve of the flank that do not lift it off: hundreds from first contact, or from near by."""
 FIRST_FRICTION_STEP, LEAST_FRICTION_STEP = 0.25, 0.01
 """First and least step of the continuation in the strength of friction."""
 JAMMING_LOAD_RATIO = 2.0
@@ -77,8 +77,9 @@ def solve_at_output(
         near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light))
         start, inner = near.pose, Start.after(near.response)
     wanted = OutputTorque.of_drives(drives, loads)
-    if start is None and _hardly_load(drives, loads):
-        start = poses_at_stops(model, angle, wanted.mean)
+    if _hardly_load(drives, loads):
+        stops = poses_at_stops(model, angle, wanted.mean)
+        start, inner = (start, inner) if stops is None else (stops, None)
     friction, moment = model.friction, wanted.mean
     rubs = friction is not None and friction.turns
     if wheel_moment is not None and not rubs:

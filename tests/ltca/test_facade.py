@@ -244,5 +244,5 @@ def test_an_engine_class_is_no_engine():
 def test_a_torque_beyond_the_bound_of_a_command_was_searched_for(front):
     drive = ltca.load_drive("paper").cases["CS-1"].with_fields({"load.torque": 1e12})
     words = ("1 ms",) if front == "motion" else ()
-    with pytest.raises(ltca.DriveError, match="load.torque = 1e\\+12 N·mm is 1e\\+09 N·m: must be at most"):
+    with pytest.raises(ltca.DriveError, match=r"load.torque = 1e\+12 N·mm is 1e\+09 N·m: must be at most"):
         getattr(ltca, front)(drive, *words, compliance="half-space")
