@@ -53,9 +53,18 @@ def pytest_configure() -> None:
     os.environ["PYTHONPATH"] = os.pathsep.join(path for path in paths if path and Path(path) != Path(__file__).parent)
 
 
-def pytest_runtest_call(item: pytest.Item) -> None:
-    """Remember that a test is called."""
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Generator[None, Any, Any]:
+    """Remember that a test is called and does not skip itself."""
+    try:
+        found = yield
+    except pytest.skip.Exception:
+        raise
+    except BaseException:
+        item.stash[CALLED] = True
+        raise
     item.stash[CALLED] = True
+    return found
 
 
 @pytest.hookimpl(wrapper=True)

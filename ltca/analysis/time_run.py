@@ -794,7 +794,7 @@ def run_in_time(
     Raises
     ------
     ConvergenceError
-        Where the solver's step vanishes.
+        Where the solver's step vanishes, or contacts find no loads at a state between its steps.
     DamagedFileError
         Where the checkpoint does not fit the run.
     """
@@ -820,7 +820,10 @@ def run_in_time(
             state = solver.y if at == solver.t else between(at)
             if not np.isfinite(state).all():
                 raise _stopped(solver, equation, "no state between its steps")
-            recorder.take(state)
+            try:
+                recorder.take(state)
+            except ConvergenceError as problem:
+                raise _stopped(solver, equation, str(problem)) from problem
             advance(1)
         if taken % STEPS_BETWEEN == 0 and solver.status == "running":
             equation.contacts.forget_grids()

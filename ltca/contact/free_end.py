@@ -35,7 +35,7 @@ def guilbault_factor(poisson_ratio: float) -> float:
 
 
 def remaining_bulge(free_ends: Iterable[FreeEnds], stretch: FloatArray) -> FloatArray:
-    """Return the part of the bulge of half-spaces at an end that images leave, by the length of the stretch that feels them."""
+    """Return the part of the bulge of half-spaces at an end that images leave; `stretch` is by the length of the contact."""
 
     def felt(gap: FloatArray) -> FloatArray:
         first, middle, last = gap, gap + 1.0, gap + 2.0

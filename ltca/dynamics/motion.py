@@ -57,7 +57,7 @@ class Equation:
     input_torque: float | None  # None where the input turns by `input_motion`
     damping_ratio: float
     massless: MasslessParts | None = None
-    refused: list[ConvergenceError] = field(default_factory=list)  # of states tried since the last that had a rate
+    refused: list[Exception] = field(default_factory=list)  # of states tried since the last that had a rate
 
     @property
     def freedoms(self) -> int:
@@ -99,11 +99,11 @@ class Equation:
         """Return the rate of a state, shape (2m + 4,); NaN, which makes a step shorter, where contacts have no loads at it."""
         if not np.isfinite(state).all():  # a stage behind such a one
             return np.full(state.size, np.nan)
-        kept = self.warm_start()
+        kept, beside = self.contacts.start, None if self.massless is None else self.massless.warm_start
         try:
             rate = self.solved(time, state).state_rate
-        except ConvergenceError as problem:
-            self.start_from(kept)
+        except (ConvergenceError, np.linalg.LinAlgError) as problem:
+            self.start_from((kept, beside))
             self.refused.append(problem)
             return np.full(state.size, np.nan)
         self.refused.clear()

@@ -159,11 +159,12 @@ def _stages(
     model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
     everything, count = np.arange(angle.size), angle.size // series
     leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count])
+    alike = all(have_neighbours(each) for each in moment.reshape(series, count))
     if start is not None:
         pose[:] = start
         leader = leading[0] + count * np.arange(series)
         rest = everything
-        if have_neighbours(moment[:count]):
+        if alike:
             yield leader, take_positions(inner, leader)
             rest = np.setdiff1d(everything, leader, assume_unique=True)
             known = np.isin(leader, search.contacts()[0]) if search.balanced else np.zeros(series, dtype=bool)
@@ -178,7 +179,7 @@ def _stages(
             yield rest, take_positions(inner, rest) if near else _place(search, rest)
         return
     # One position of each series leads: seen from the crank, disc and wheel do the same in all others.
-    leaders = leading[0] + count * np.arange(series) if have_neighbours(moment[:count]) else everything
+    leaders = leading[0] + count * np.arange(series) if alike else everything
     pose[leaders] = _at_first_contact(model.take(leaders), angle[leaders], moment[leaders])
     yield leaders, None
     rest = np.setdiff1d(everything, leaders, assume_unique=True)
@@ -267,7 +268,10 @@ def _from_stops(search: Search, rows: NDArray[np.intp]) -> NDArray[np.intp]:
     if pose is None:
         return rows
     part = _part(search, rows, np.ones(rows.size), pose)
-    lost = part.iterate(MAX_ITERATIONS)
+    try:
+        lost = part.iterate(MAX_ITERATIONS)
+    except ConvergenceError:  # contacts may be lost on the way
+        return rows
     search.iterations[rows] += part.iterations
     if lost.size < rows.size:
         _take_over(search, rows, part, np.ones(rows.size, dtype=bool))

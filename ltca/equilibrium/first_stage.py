@@ -43,12 +43,10 @@ class StageMesh:
     sun_radius: BatchScalar = by_drive(0)
     reduction_ratio: float
     outward: ComplexArray = by_drive(1)  # directions from the sun to the cranks
-    by_pose: ComplexArray = by_drive(
-        3
-    )  # displacement and slope at the planet by the pose, shape (cranks, 2, coordinates)
+    by_pose: ComplexArray = by_drive(3)  # displacement and slope at the planet, shape (cranks, 2, coordinates)
     by_bearings: FloatArray = by_drive(2)  # the same by displacements in its two bearings, discs standing still
     own: FloatArray = by_drive(2)  # the same by force and couple there, mm/N
-    on_supports: FloatArray = by_drive(2)  # part of these that each bearing carries, shape (supports, 2)
+    on_supports: FloatArray = by_drive(2)  # part of force and couple that each bearing carries, shape (supports, 2)
     yields: bool  # whether cranks yield, or the far flange in which they stand
     carried: bool  # whether the carrier is the output
     sun_turns: float  # turns of the sun against the carrier by turn of a crank, −z₂/z₁

@@ -72,14 +72,13 @@ def solve_at_output(
     """
     angle = np.atleast_1d(np.asarray(crank_angle, dtype=float))
     loads = np.broadcast_to(np.asarray(torque, dtype=float), angle.shape)
+    wanted = OutputTorque.of_drives(drives, loads)
+    if _hardly_load(drives, loads) and (stops := poses_at_stops(model, angle, wanted.mean)) is not None:
+        start, inner = stops, None
     if start is None and np.any(loads == 0.0):
         light = np.repeat([drive.load.light_torque for drive in drives], angle.size // len(drives))
         near = solve_at_output(replace(model, friction=None), drives, angle, np.where(loads, loads, light))
         start, inner = near.pose, Start.after(near.response)
-    wanted = OutputTorque.of_drives(drives, loads)
-    if _hardly_load(drives, loads):
-        stops = poses_at_stops(model, angle, wanted.mean)
-        start, inner = (start, inner) if stops is None else (stops, None)
     friction, moment = model.friction, wanted.mean
     rubs = friction is not None and friction.turns
     if wheel_moment is not None and not rubs:
@@ -115,7 +114,7 @@ def solve_at_output(
 def _hardly_load(drives: Sequence[Drive], loads: FloatArray) -> bool:
     """Whether all loads press the parts so little that their way through the play would be long."""
     least = np.repeat([least_torque(drive) for drive in drives], loads.size // len(drives))
-    return bool(np.all(loads < HARDLY_LOADED * least))
+    return bool(np.all(np.abs(loads) < HARDLY_LOADED * least))
 
 
 def _jam(

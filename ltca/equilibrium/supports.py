@@ -1,7 +1,7 @@
 r"""Springs on coordinates: crankshafts as beams on their bearings, and the wheel on its own (``docs/how-to/supports.md``).
 
-With the displacements w in bearings with clearance or preload, K of the shaft on springs, and the parts L of forces on
-bearings,
+With the displacements w in bearings with clearance or preload, their energy ψ (`SideLaw`) and reactions R, K of the shaft on
+springs, and the parts L of forces on bearings, U is convex and smooth:
 
 .. math:: U(u) = \min_w \tfrac12 (u - Lw)^T K (u - Lw) + \sum \psi(w), \qquad f = K (u - Lw), \quad R = L^T f .
 """

@@ -21,7 +21,7 @@ class RollingRow:
 
     radial: float
     axial: float
-    pressure_centre: float  # h = z ∓ R tan α, where the contact normals meet the axis, mm
+    pressure_centre: float  # h = z − s R tan α, s the `facing`, where the contact normals meet the axis, mm
     reach: float = inf  # radial displacement at which the elements opposite to the load lift off, mm
     normal_load: float = 0.0  # sum of the normal loads of all by the preload, N
 

@@ -70,7 +70,7 @@ ROUND_OFF = 1e-13
 LEAST_CHANGE = 1e-13
 """Least change of a load, by the largest of its position, that counts."""
 LEAST_ROUGHLY = 5e-3
-"""The same for a step of a search, in whose residual what is left counts all the same."""
+"""The same for a step of a search: `Linearised.left` counts what is smaller."""
 
 
 class ContactSystem:
@@ -136,7 +136,8 @@ class ContactSystem:
         by_crank: bool = False,
         apart: bool = True,
     ) -> list[tuple[Indices, Linearised]]:
-        """Return contacts at poses, to first order in what inner unknowns leave, then groups of those that settle later, `apart`.
+        """Return contacts at poses, to first order in what inner unknowns leave: all in the first group, those that settle later
+        once more in further ones, `apart`, which replace their rows.
 
         Contacts far from touching that others move are left out unless `everything` counts or, if not `roughly`, one of them
         turns out to be pressed. With `by_crank` the crank angle is a coordinate by which cages turn, discs and wheel move
@@ -248,8 +249,6 @@ class Linearised:
     """Derivatives of these by the coordinates of each disc, where nothing else deforms."""
     bodies: list[list[BodyFlexibility]]
     members: PinMembers
-    off_by: FloatArray
-    """Residual of the deformations, r, mm."""
     by_slope: BySlope | None = None
     """Additions to the tangent of a search (`ltca.mechanics.full_tangent`)."""
 
@@ -454,7 +453,7 @@ class Linearised:
             return
         carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
         if self.before is not None:
-            carries[self.row, self.before.contacts] = True
+            carries[self.row, self.before.contacts] |= self.before.own
         self.chosen, own = [], []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
@@ -775,10 +774,12 @@ class Linearised:
         if self.shifts is None:
             return at
         for _ in range(MAX_CORRECTIONS):
-            going = moves & ~at.settled(roughly=True)
+            going, before = moves & ~at.settled(roughly=True), at.off
             if not going.any():
                 break
             at = at._stepped(going)
+            if not np.any(at.off[going] < before[going]):
+                break
         state = at._state()
         assert state.shifts is not None
         state = state._replace(shifts=self.shifts + part[:, None, None] * (state.shifts - self.shifts))
@@ -787,7 +788,7 @@ class Linearised:
     def _stepped(
         self, moves: NDArray[np.bool_], leave: Callable[[NDArray[np.bool_]], bool] | None = None
     ) -> Linearised:
-        """The contacts with deformations of some positions a step on, or a part of it that leaves no more of them over."""
+        """The contacts with deformations of some positions a step on, which is halved as long as their residual grows."""
         fraction = moves.astype(float)
         for _ in range(MAX_HALVINGS):
             found = self.again(self._state(fraction), self)

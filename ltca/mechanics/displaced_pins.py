@@ -31,7 +31,7 @@ class PinMembers:
 
             def seen(first: FloatArray, second: FloatArray, frame: ComplexArray = frame) -> ComplexArray:
                 both = np.concatenate((first, second), axis=1)[..., DISC_PLACE]
-                return np.asarray(-(both[..., 0] + 1j * both[..., 1]) * frame)
+                return np.asarray(-(both[..., 0] + 1j * both[..., 1]) * frame)  # as the disc moves the other way
 
             normal = seen(each.flank.gradient, each.holes.gradient)
             along = seen(each.flank.along, each.holes.along)
@@ -44,7 +44,7 @@ class PinMembers:
                 self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
 
     def forces(self, load: FloatArray, aside: FloatArray | None = None, *, changes: bool = False) -> ComplexArray:
-        """Return Lᵀ f of loads or of `changes` of loads, friction that sticks left out, shape (positions, rows, pairs), and of
+        """Return Lᵀ f of loads, or of `changes` of loads without friction that sticks, shape (positions, rows, pairs), and of
         forces `aside` of the normals, shape (positions, components, discs, pairs).
         """
         system, forces, moments = self.at.system, [], []

@@ -15,7 +15,7 @@ from ltca.mechanics.pressing import Pressing, assembled, bends, bores_moved, gra
 ROUGHLY_SETTLED = 0.02
 """Largest correction of a deformation, by the largest approach, at which a step of the pose is judged."""
 LEAST_ROOM = 1e-7
-"""Correction of a roller that is always allowed, mm."""
+"""Correction of a roller that is always allowed, mm: one that is hardly pressed would go on by less for ever."""
 LEAST_TURNING = 1e-9
 """Least stiffness of a roller against leaning by that of its place and the square of half the width."""
 
@@ -211,7 +211,6 @@ def _beside_rollers(at: Any, found: Eliminated) -> None:
 def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
     """Find the residual of the deformations where it matters, mm."""
     stiffness, (bores, races) = every.stiffness, every.rolls
-    at.off_by = at.of_all(left)
     wanted = np.abs(left).sum(axis=1)
     expected = at.of_chosen(at.deformation)[:, 0] - left[:, 0]
     stiff = stiffness[0][:, bores] + stiffness[0][:, races]
@@ -221,7 +220,7 @@ def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
     for places in (bores, races):
         expected[:, places] = np.where(free, middle, expected[:, places])
         wanted[:, places] = np.where(free, both, wanted[:, places])
-    matters = (stiffness[0] > 0.0) | (expected > 0.0)
+    matters = ((stiffness[0] > 0.0) | (expected > 0.0)) & at.own
     at.off = np.max(wanted * matters, axis=1, initial=0.0)
     apart = np.abs(every.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
     at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))

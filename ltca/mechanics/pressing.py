@@ -20,9 +20,11 @@ class Pressing(NamedTuple):
     force_map: FloatArray  # the same with friction along the tangents
     load: FloatArray  # f, shape (positions, components, chosen)
     stiffness: FloatArray  # K, shape (1 or 3, positions, chosen)
-    presses: tuple[FloatArray, FloatArray]  # by rollers in bores and on races, shape (positions, components, rollers)
+    presses: tuple[
+        FloatArray, FloatArray
+    ]  # ∂d/∂x of rollers in bores and on races, shape (positions, components, rollers)
     unbalanced: FloatArray  # forces on the rollers' places, shape (positions, rollers, components)
-    placed: FloatArray  # their derivatives by the coordinates, loads held, with these behind
+    placed: FloatArray  # ∂(unbalanced)/∂q, loads held, (positions, rollers, components, coordinates)
     own_bend: FloatArray  # and by the places, shape (positions, rollers)
     force: FloatArray
     tangent: FloatArray  # derivative of the force, loads held

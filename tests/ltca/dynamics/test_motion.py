@@ -502,7 +502,7 @@ def test_a_disc_carried_round_pulls_with_its_mass():
 class OneContact:
     """A mass on one Hertzian point contact, F = k max(δ, 0)^1.5, with viscous damping as the literature has it."""
 
-    has_energy = False
+    has_energy, start = False, None
 
     def __init__(self, stiffness, damping):
         self.stiffness, self.damping = stiffness, damping

@@ -13,12 +13,14 @@ from ltca.analysis.engines import HalfSpace
 from ltca.arrays import stack_drives
 from ltca.compliance.half_space import HalfSpaceCompliance
 from ltca.equilibrium.balance import _failure, lever_arms, solve_equilibrium
+from ltca.equilibrium.output_torque import _hardly_load, solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates
+from ltca.geometry.placement import position_angles
 from ltca.laws.spring import SpringLaw
 from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import parse_drive, shipped_drive
+from ltca.reading.drive_file import load_drive, parse_drive, shipped_drive
 from ltca.testing.balance_check import find_imbalance
 from ltca.testing.random_drives import COORDINATES, random_drive
 from validation.methods.unloaded import unloaded_transmission_error
@@ -231,3 +233,21 @@ def test_the_position_farthest_from_balance_is_named_by_its_own_load():
     told = _failure(search, np.arange(3))
     assert str(told).startswith("no equilibrium at crank angle 0.2 rad (position 1 of 3, 3 unbalanced)")
     assert "against a load of 10 N" in str(told)
+
+
+def test_hardly_loaded_means_the_size_of_a_torque():
+    """Torques of the other sense counted as hardly any, and what was known near them was thrown away."""
+    drive = load_drive("paper").cases["CS-1"]
+    assert not _hardly_load([drive], np.array([-drive.load.torque]))
+    assert _hardly_load([drive], np.array([-1e-6, 1e-6]))
+
+
+def test_moments_beside_a_held_wheel_stay():
+    """Of a batch whose first drive holds its wheel, torques of a second that holds its shaft were put between their neighbours."""
+    held = with_fields(load_drive("paper").cases["CS-1"], {"installation.held": "pin-wheel"})
+    free = load_drive("paper").cases["CS-1"]
+    angle = np.tile(position_angles(12), 2)
+    torque = np.concatenate((np.full(12, held.load.torque), free.load.torque * np.linspace(0.5, 1.0, 12)))
+    model = stack_drives([HalfSpace().prepare(each).model for each in (held, free)], 12)
+    found = solve_at_output(model, [held, free], angle, torque)
+    np.testing.assert_array_equal(found.wheel_moment[12:], free.wheel_moment(1.0) * torque[12:])
