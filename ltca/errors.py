@@ -26,7 +26,8 @@ class Problem(str):
     trouble : str
         What is wrong, said before the bound; empty as well.
     bound : tuple of str and float, optional
-        Relation and number of the bound, in the unit of the sentence; None where no number is known.
+        Relation ("at most in size" is that of both signs) and number of the bound, in the unit of the sentence; None where no
+        number is known.
 
     Examples
     --------

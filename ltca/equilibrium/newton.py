@@ -7,6 +7,7 @@ in every iteration. Positions with friction, which has no potential, may be bala
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -178,19 +179,14 @@ class Search:
             return False
         random = np.random.default_rng(0)  # the same position is always answered alike
         last = self.pose[row : row + 1].copy()
-        return any(
-            self._reduce_residual(row, last * (1.0 + part * random.normal(size=last.shape)))
-            for part in RESTART_PERTURBATIONS
-        )
-
-    def _reduce_residual(self, row: int, pose: FloatArray) -> bool:
-        """Levenberg and Marquardt's iteration from a pose."""
-        try:
-            return self._descend(np.array([row]), row, pose)
-        except ConvergenceError:  # contacts may be lost on the way
-            return False
+        for part in RESTART_PERTURBATIONS:
+            with suppress(ConvergenceError):  # contacts may be lost on the way
+                if self._descend(np.array([row]), row, last * (1.0 + part * random.normal(size=last.shape))):
+                    return True
+        return False
 
     def _descend(self, rows: NDArray[np.intp], row: int, pose: FloatArray) -> bool:
+        """Levenberg and Marquardt's iteration from a pose."""
         response = self.evaluate(rows, pose, None)
         gradient, tangent = self.scaled(rows, response)
         damping, size = 1e-10, pose.shape[1]
@@ -219,10 +215,9 @@ class Search:
 
     def follow_valley(self, row: int) -> bool:
         """Balance a position that creeps along one soft mode; tell whether it does."""
-        try:
+        with suppress(ConvergenceError):  # steps along a valley are long: contacts may be lost on the way
             return self._follow_valley(row)
-        except ConvergenceError:  # steps along a valley are long: contacts may be lost on the way
-            return False
+        return False
 
     def _follow_valley(self, row: int) -> bool:
         """Follow the softest mode, down to the bottom after every step: straight steps along it climb the walls of Π."""

@@ -545,7 +545,7 @@ def find_deviation_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {value:g} mm",
                 f"must be at most {limit:g} mm in size, a tenth of the smallest pin or roller radius and half the "
                 "eccentricity",
-                bound=("at most", limit),
+                bound=("at most in size", limit),
             )
     yield from find_lead_problems(drive.disc, bound)
     yield from _profile_errors(drive, bound)
@@ -565,7 +565,7 @@ def part_errors(
                 f"{path}.{name}",
                 f"holds {worst:g} mm",
                 f"must be at most {bound:g} mm in size, a tenth of the smallest pin or roller radius",
-                bound=("at most", bound),
+                bound=("at most in size", bound),
             )
     for name in ("inclination_x", "inclination_y"):
         values = getattr(errors, name, ())

@@ -514,7 +514,7 @@ def _loose_or_tight(
                 f"{path}.{name}",
                 f"= {value:g} mm",
                 f"must be at most {most:g} mm in size, half the eccentricity",
-                bound=("at most", most),
+                bound=("at most in size", most),
             )
     if preload is None:
         return
@@ -748,7 +748,7 @@ def _per_disc(drive: Drive) -> Iterator[Problem]:
                 f"must be at most {bound:.4g} rad in size: the eccentric's centre moves by a tenth of the smallest pin or roller "
                 "radius, or by half the eccentricity",
                 shown=f"{_entry(drive, number)}: phase_error",
-                bound=("at most", bound),
+                bound=("at most in size", bound),
             )
 
 
@@ -816,7 +816,7 @@ def _eccentric_problems(drive: Drive) -> Iterator[Problem]:
                 f"= {entry.eccentricity_error:g} mm",
                 f"must be at most {size:g} mm in size, a tenth of the smallest pin or roller radius and half the eccentricity",
                 shown=f"{_entry(drive, number)}: eccentricity_error",
-                bound=("at most", size),
+                bound=("at most in size", size),
             )
 
 

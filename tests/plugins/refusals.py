@@ -25,7 +25,8 @@ def says_bound(problem: Problem) -> bool:
     """Tell whether a sentence says the bound that it carries: its relation, unless it is "equal to", and its number, rounded."""
     assert problem.bound is not None
     relation, number = problem.bound
-    said = relation == "equal to" or relation in problem.said
+    words, _, size = relation.partition(" in ")  # "at most in size" reads "at most 3 mm in size"
+    said = relation == "equal to" or (words in problem.said and size in problem.said)
     return said and any(f"{number:.{digits}g}" in problem.said for digits in range(2, 13))
 
 

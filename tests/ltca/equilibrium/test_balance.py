@@ -243,7 +243,7 @@ def test_hardly_loaded_means_the_size_of_a_torque():
 
 
 def test_moments_beside_a_held_wheel_stay():
-    """Of a batch whose first drive holds its wheel, torques of a second that holds its shaft were put between their neighbours."""
+    """Of a batch whose first drive holds its wheel, torques of one that holds its shaft were put between neighbours."""
     held = with_fields(load_drive("paper").cases["CS-1"], {"installation.held": "pin-wheel"})
     free = load_drive("paper").cases["CS-1"]
     angle = np.tile(position_angles(12), 2)

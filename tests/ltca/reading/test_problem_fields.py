@@ -87,7 +87,7 @@ def test_the_bound_of_a_contradiction_is_the_number_that_it_says():
             problems = [problem for problem in error.problems if getattr(problem, "bound", None)]
         for problem in problems:
             relation, number = problem.bound
-            words = {"equal to": "must equal ", "": ""}.get(relation, f"{relation} ")
+            words = {"equal to": "must equal ", "": ""}.get(relation, f"{relation.partition(' in ')[0]} ")
             numbers = [text.split()[0].rstrip(",:;") for text in problem.said.split(words)[1:]]
             assert any(float(text) == pytest.approx(number, rel=0.05) for text in numbers if text[0] in "-0123456789"), (
                 problem, problem.bound,
