@@ -118,4 +118,6 @@ def test_a_ridge_is_no_balance():
         found = solve_at_output(model, [drive], np.array([angle]), -1e-5 * drive.load.torque)
     except ConvergenceError:
         return
-    assert np.linalg.eigvalsh(found.response.tangent[0])[0] >= 0.0
+    stiffness = np.linalg.eigvalsh(found.response.tangent[0])
+    assert stiffness[0] >= -1e-12 * stiffness[-1]  # discs that float have none, but for round-off
+    assert found.response.pin_load.max() < 1.0  # N
