@@ -21,6 +21,10 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
     pins, bores, holes, races = (load[:, 0, kind] for kind in kinds)
     flank, in_holes = each.flank, each.holes
     rollers = _rollers(at, disc)
+    if at.shifts is not None:  # pins where the loads of the answer press them, not where these were found
+        moved = at.moved_by_pins[:, 0]
+        flank = replace(flank, approach=flank.approach + moved[:, kinds[0]])
+        in_holes = replace(in_holes, approach=in_holes.approach + moved[:, kinds[2]])
     if system.coupled and system.components == 1:
         body = system.model.discs[disc].bodies[0]
         approach = _approaches(at, disc)

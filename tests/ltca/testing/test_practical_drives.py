@@ -33,6 +33,11 @@ def test_five_hundred_practical_drives(first, count):
     check_seeds(first, count)
 
 
+def test_a_pin_that_just_touches_was_told_to_carry_while_open():
+    """Approaches on displaced pins were those before the last correction, loads those after it: 7e-11 N at −4e-15 mm."""
+    check_seeds(380, 1)
+
+
 def test_preloaded_drives_quick():
     check_seeds(0, 1, preloaded_drive)
 
