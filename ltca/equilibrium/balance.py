@@ -31,7 +31,7 @@ MAX_TORQUE_STEPS = 7
 LEAST_TORQUE_RATIO = 1.05
 COARSER = 4
 """Leading positions for one that leads these, where evaluations take long."""
-MANY = 360
+LEAST_LED = 360
 """Positions from which some lead the others even where evaluations take little."""
 FEW_ITERATIONS = 3
 """Iterations that a nearby start takes at most."""
@@ -193,7 +193,7 @@ def _stages(
         some = np.isin(beside, leading)
         few = np.isin(beside, leading[::COARSER])
         levels = [beside[few], beside[some & ~few], beside[~some]]
-    elif series == 1 and leading.size < count and count >= MANY:
+    elif series == 1 and leading.size < count and count >= LEAST_LED:
         some = np.isin(beside, leading)
         levels = [beside[some], beside[~some]]
     for number, level in enumerate(levels):

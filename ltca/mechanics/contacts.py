@@ -453,15 +453,15 @@ class Linearised:
             return
         carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
         if self.before is not None:
-            carries[self.row, self.before.contacts] |= self.before.own
-        self.chosen, own = [], []
+            carries[self.row, self.before.contacts] |= self.before.selected
+        self.chosen, selected = [], []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
             wanted = pins, bores | races, holes
             of_pins, of_rollers, of_holes = (padded(each) for each in wanted)
             self.chosen.append([of_pins, of_rollers, of_holes, of_rollers])
             mine = [np.take_along_axis(*each, axis=1) for each in zip(wanted, self.chosen[-1][:3], strict=True)]
-            own.append([*mine, mine[1]])
+            selected.append([*mine, mine[1]])
         parts = [
             first.start + some
             for kinds, chosen in zip(system.of_kind, self.chosen, strict=True)
@@ -471,9 +471,9 @@ class Linearised:
         self.rollers: Indices = np.concatenate(
             [disc * system.rollers + chosen[1] for disc, chosen in enumerate(self.chosen)], axis=1
         )
-        self.own: NDArray[np.bool_] = np.concatenate([mask for each in own for mask in each], axis=1)
-        """Which of them are chosen by their own position: others fill its row up, and stay as they are."""
-        self.own_rollers: NDArray[np.bool_] = np.concatenate([each[1] for each in own], axis=1)
+        self.selected: NDArray[np.bool_] = np.concatenate([mask for each in selected for mask in each], axis=1)
+        """Which of them their own position selects: others fill its row up, and stay as they are."""
+        self.selected_rollers: NDArray[np.bool_] = np.concatenate([each[1] for each in selected], axis=1)
         self.count = self.contacts.shape[1]
         self.at, self.of_rollers, self.local = places_of(self.chosen)
 
@@ -585,7 +585,7 @@ class Linearised:
 
     def _leave_others(self) -> None:
         """Correct nothing of what only fills a row up: a position is answered alike whatever others stand beside it."""
-        contacts, rollers = self.own[:, None, :, None], self.own_rollers[..., None, None]
+        contacts, rollers = self.selected[:, None, :, None], self.selected_rollers[..., None, None]
         self.de, self.dx = self.de * contacts[..., 0], self.dx * rollers[..., 0]
         if self.de_by_pose is not None:
             self.de_by_pose = self.de_by_pose * contacts
@@ -601,7 +601,7 @@ class Linearised:
         if not self.held:  # where pins are held, what they will press is found by those that are not
             after += self.moved_by_pins[:, 0]
         corrected = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
-        after[self.row, self.contacts] = np.where(self.own, corrected, after[self.row, self.contacts])
+        after[self.row, self.contacts] = np.where(self.selected, corrected, after[self.row, self.contacts])
         for _, bores, _, races in self.system.of_kind:
             after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
         return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
@@ -824,7 +824,7 @@ class Linearised:
         for disc, (kinds, yielding) in enumerate(zip(self.system.of_kind, self.yielding, strict=True)):
             pressed = reach[:, kinds[0].start : kinds[2].stop] > (yielding[0] if yielding else 0.0)
             for some, kind, mine in zip(self.chosen[disc][:3], kinds[:3], self.at[disc][:3], strict=True):
-                pressed[self.row, some + kind.start - kinds[0].start] &= ~self.own[:, mine]
+                pressed[self.row, some + kind.start - kinds[0].start] &= ~self.selected[:, mine]
             found |= pressed.any(axis=1)
         return found
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +15,9 @@ from ltca.drive.engine_support import require
 from ltca.drive.pin_beams import _energy_beside, _wind_up, shaft_pin_spring
 from ltca.geometry.placement import position_angles
 from ltca.page.derived import derived_rows
-from ltca.reading.drive_file import load_drive
+from ltca.reading.drive_file import load_drive, parse_drive
 
+ROOT = Path(__file__).parents[3]
 JOINT = load_drive("robot-joint").cases["nominal"]
 TIED = {"pin_shaft.beam.tip": "tied-clamped"}
 
@@ -168,7 +170,23 @@ def test_the_spring_of_three_pins_was_told_to_be_within_ten_percent():
     )
     off = abs(sprung / bent - 1.0)
     assert 0.1 < off < spring.error
-    assert spring.accuracy == "within some 20 %"
+    assert spring.accuracy == "within some 25 %"
+
+
+@pytest.mark.slow
+def test_the_spring_of_slender_pins_on_pinned_tips_was_told_to_be_within_twenty_percent(monkeypatch):
+    """It is 22 % too soft: of 24 invented drives the worst with tied tips."""
+    monkeypatch.syspath_prepend(ROOT / "benchmarks")
+    from spring_of_pins import BASE, BEAMS, stiffnesses
+
+    (base,) = parse_drive(BASE).cases.values()
+    beams = base.with_fields(BEAMS["pinned, slender"])
+    spring = shaft_pin_spring(beams)
+    bent, sprung = (
+        stiffnesses(drive, position_angles(3))
+        for drive in (beams, beams.with_fields({"pin_shaft.stiffness": spring.stiffness}))
+    )
+    assert 0.2 < np.max(np.abs(sprung / bent - 1.0)) < spring.error
 
 
 @pytest.mark.parametrize("engine", ["full FE", "FE mesh", "solid disc", "direct"])
@@ -187,7 +205,7 @@ def test_show_prints_the_spring_that_pins_are_equal_to():
     spring = shaft_pin_spring(JOINT.with_fields(TIED))
     drive = JOINT.with_fields(TIED)
     row = dict(derived_rows(drive, drive, plays=False))["shaft pins, springs that turn as far"]
-    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm, within some 20 %; ")
+    assert row.startswith(f"pin_shaft.stiffness = {spring.stiffness:g} N/mm, within some 25 %; ")
     assert "shaft pins, springs that turn as far" not in dict(derived_rows(JOINT, JOINT, plays=False))
 
 
