@@ -453,15 +453,12 @@ class Linearised:
             return
         carries = np.any(self.stiffness != 0.0, axis=0) | (self.load[:, 0] > 0.0) | self._within()
         if self.before is not None:
-            carries[self.row, self.before.contacts] |= self.before.selected
-        self.chosen, selected = [], []
+            carries[self.row, self.before.contacts] = True
+        self.chosen = []
         for disc in range(system.discs):
             pins, bores, holes, races = (carries[:, kind] for kind in system.of_kind[disc])
-            wanted = pins, bores | races, holes
-            of_pins, of_rollers, of_holes = (padded(each) for each in wanted)
-            self.chosen.append([of_pins, of_rollers, of_holes, of_rollers])
-            mine = [np.take_along_axis(*each, axis=1) for each in zip(wanted, self.chosen[-1][:3], strict=True)]
-            selected.append([*mine, mine[1]])
+            rollers = padded(bores | races)
+            self.chosen.append([padded(pins), rollers, padded(holes), rollers])
         parts = [
             first.start + some
             for kinds, chosen in zip(system.of_kind, self.chosen, strict=True)
@@ -471,9 +468,6 @@ class Linearised:
         self.rollers: Indices = np.concatenate(
             [disc * system.rollers + chosen[1] for disc, chosen in enumerate(self.chosen)], axis=1
         )
-        self.selected: NDArray[np.bool_] = np.concatenate([mask for each in selected for mask in each], axis=1)
-        """Which of them their own position selects: others fill its row up, and stay as they are."""
-        self.selected_rollers: NDArray[np.bool_] = np.concatenate([each[1] for each in selected], axis=1)
         self.count = self.contacts.shape[1]
         self.at, self.of_rollers, self.local = places_of(self.chosen)
 
@@ -570,8 +564,6 @@ class Linearised:
             eliminate_coupled(self)
         else:
             eliminate_by_disc(self)
-        if not self.every:
-            self._leave_others()
         stiffness = self.chosen_stiffness
         self.change = loads_of(stiffness, self.de[..., None])[..., 0]
         moved = np.abs(self.de).sum(axis=1)
@@ -583,25 +575,13 @@ class Linearised:
         if self.system.deforms:
             self.moved = np.maximum(self.moved, self._closed)
 
-    def _leave_others(self) -> None:
-        """Correct nothing of what only fills a row up: a position is answered alike whatever others stand beside it."""
-        contacts, rollers = self.selected[:, None, :, None], self.selected_rollers[..., None, None]
-        self.de, self.dx = self.de * contacts[..., 0], self.dx * rollers[..., 0]
-        if self.de_by_pose is not None:
-            self.de_by_pose = self.de_by_pose * contacts
-        if self.system.coupled:
-            self.dx_by_pose = self.dx_by_pose * rollers
-        else:
-            self.by_own = [by_own * rollers[:, some] for by_own, some in zip(self.by_own, self.of_rollers, strict=True)]
-
     @property
     def _closed(self) -> FloatArray:
         """Depth to which the correction presses open contacts, mm; for a roller its whole play counts."""
         after = self.deformation[:, 0].copy()
         if not self.held:  # where pins are held, what they will press is found by those that are not
             after += self.moved_by_pins[:, 0]
-        corrected = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
-        after[self.row, self.contacts] = np.where(self.selected, corrected, after[self.row, self.contacts])
+        after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
         for _, bores, _, races in self.system.of_kind:
             after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
         return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
@@ -823,8 +803,8 @@ class Linearised:
         reach = reach[:, 0] + np.abs(reach[:, 1:]).sum(axis=1)
         for disc, (kinds, yielding) in enumerate(zip(self.system.of_kind, self.yielding, strict=True)):
             pressed = reach[:, kinds[0].start : kinds[2].stop] > (yielding[0] if yielding else 0.0)
-            for some, kind, mine in zip(self.chosen[disc][:3], kinds[:3], self.at[disc][:3], strict=True):
-                pressed[self.row, some + kind.start - kinds[0].start] &= ~self.selected[:, mine]
+            for some, kind in zip(self.chosen[disc][:3], kinds[:3], strict=True):
+                pressed[self.row, some + kind.start - kinds[0].start] = False
             found |= pressed.any(axis=1)
         return found
 

@@ -220,7 +220,7 @@ def _find_off(at: Any, every: Pressing, left: FloatArray) -> None:
     for places in (bores, races):
         expected[:, places] = np.where(free, middle, expected[:, places])
         wanted[:, places] = np.where(free, both, wanted[:, places])
-    matters = ((stiffness[0] > 0.0) | (expected > 0.0)) & at.selected
+    matters = (stiffness[0] > 0.0) | (expected > 0.0)
     at.off = np.max(wanted * matters, axis=1, initial=0.0)
     apart = np.abs(every.unbalanced).sum(axis=-1) / np.where(stiff > 0.0, stiff, np.inf)
     at.off = np.maximum(at.off, np.max(apart, axis=1, initial=0.0))
