@@ -30,7 +30,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 BUDGET = ROOT / "tests" / "budget.toml"
-QUICK_SECONDS, FULL_SECONDS = 0.2, 1.5
+QUICK_SECONDS, FULL_SECONDS = 0.12, 1.2
 """Longest tests of the quick and of the full set, s of processor time."""
 SHOWN = 30
 FOLDER = "CYCLO_SUITE_TIMES"

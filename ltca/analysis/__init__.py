@@ -21,6 +21,7 @@ half_width_guard           Where half-spaces and the parabolas of tables end: co
 extremes                   Extremes of an analysis between its positions: peak-to-peak values and largest loads that do not
                            hang on sampling
 results                    The labelled dataset of a run: what ``results.nc`` holds
+mass_values                Masses, unbalance and inertias as results hold and print them
 summary                    The scalars of one case: what ``summary.json`` holds
 summary_rows               Which of them a table shows, in which order
 derivatives                Derivatives of loads, poses, angles and pressures of a balanced drive with respect to its fields

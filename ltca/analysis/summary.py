@@ -12,11 +12,11 @@ from ltca.analysis.contact_arrays import array_of
 from ltca.analysis.extremes import Sampling, is_full_turn, refine_together, sampling
 from ltca.analysis.friction.losses import KINDS
 from ltca.analysis.loaded_analysis import MAX_BATCH_POSITIONS, LoadedAnalysis
+from ltca.analysis.mass_values import NAMES as OF_MASSES, mass_values
 from ltca.analysis.memory_need import positions_together
 from ltca.analysis.results import case_arrays
 from ltca.arrays import FloatArray, batch_layout, stack_drives, take_rows
 from ltca.drive.units.quantities import ARCMIN, ARCSEC
-from ltca.dynamics.mass_values import NAMES as OF_MASSES, mass_values
 from ltca.equilibrium.output_angle import play_before_cranks
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE

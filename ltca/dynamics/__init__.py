@@ -1,6 +1,4 @@
-"""Masses of a drive, its vibrations about a balanced position, and its motion in time.
-
-Modules in the order data passes:
+"""Masses of a drive, its vibrations about a balanced position, and its motion in time; modules in the order data passes.
 
 ================  =======================================================================================
 masses            Volume, mass, centre and inertia of every part, and the unbalance of the discs
@@ -13,6 +11,5 @@ teeth             Teeth of a first stage on cranks, flange and wheel at one inst
 contact_forces    Forces of contacts, supports and friction of a drive at one instant
 massless          Parts that yield and have no mass, which follow all others
 motion            Equation of motion
-mass_values       Masses, unbalance and inertias as results hold and print them
 ================  =======================================================================================
 """

@@ -1,6 +1,4 @@
-"""The pose that balances.
-
-Modules in the order data passes:
+"""The pose that balances; modules in the order data passes.
 
 =================  ============================================================================================
 reducer            A reducer of several discs: each with its own joints to wheel, crank and pin shaft

@@ -17,7 +17,7 @@ RESOLVED = 4
 """Leading positions in a passage of a tooth, a hole or a roller, whichever are most."""
 WORTH = 2
 """Positions for one leading, below which each might as well lead."""
-MOST = 8
+MOST = 4
 AROUND = 4
 """Known positions that a place between them follows, by Lagrange's polynomial; the two beside it where spacings differ."""
 UNEVEN = 2.0

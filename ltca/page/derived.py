@@ -6,6 +6,7 @@ from math import degrees, isnan, pi, sin
 
 import numpy as np
 
+from ltca.analysis.mass_values import mass_rows
 from ltca.analysis.verdict.geometry import roller_gap, walls
 from ltca.drive.members.bearings import designation_of
 from ltca.drive.members.named_materials import named_parts
@@ -14,7 +15,6 @@ from ltca.drive.parts import Drive, FirstStage, PinShaft, PinWheel
 from ltca.drive.pin_beams import shaft_pin_spring, two_digits
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
-from ltca.dynamics.mass_values import mass_rows
 from ltca.equilibrium.first_stage import StageMesh
 from ltca.equilibrium.supports import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE

@@ -22,6 +22,7 @@ from ltca.analysis.drive_curves import fewest_turns
 from ltca.analysis.engines import HalfSpace, Hybrid, PlaneStrain
 from ltca.analysis.forced_vibration import forced_vibration
 from ltca.analysis.loaded_analysis import analyse, analyse_cases
+from ltca.analysis.mass_values import mass_values
 from ltca.analysis.reactions import reaction_values
 from ltca.analysis.time_run import Course, prepare_run, run_in_time
 from ltca.analysis.vibration import vibration, vibration_content
@@ -33,7 +34,6 @@ from ltca.drive.materials import JUDGED_BY
 from ltca.drive.members.temperatures import warm_drive
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
-from ltca.dynamics.mass_values import mass_values
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import DriveError

@@ -1,6 +1,4 @@
-"""Friction of the joints: what slips, and the forces that follow.
-
-Modules in the order data passes:
+"""Friction of the joints: what slips, and the forces that follow; modules in the order data passes.
 
 =========  ==========================================================================================
 slip       How contacts slip by the pose and by the crank angle

@@ -6,10 +6,10 @@ import numpy as np
 
 from ltca.analysis.force_orders import ForceSpectrum
 from ltca.analysis.forced_vibration import OPERATION, ForcedVibration, response_notes
+from ltca.analysis.mass_values import mass_rows
 from ltca.analysis.vibration import Vibration
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.units.quantities import ARCSEC
-from ltca.dynamics.mass_values import mass_rows
 from ltca.page.study_page import Curves, Section
 from ltca.page.tables import Table, folded, minus, number, texts, word
 

@@ -10,11 +10,11 @@ import pytest
 from refusals import refused_field
 from scipy.integrate import quad
 
+from ltca.analysis.mass_values import mass_rows, mass_values
 from ltca.commands.program import main
 from ltca.drive.members.named_materials import named_material
 from ltca.drive.units.quantities import parse_quantity
 from ltca.dynamics.kinetics import reflected_inertia
-from ltca.dynamics.mass_values import mass_rows, mass_values
 from ltca.dynamics.masses import (
     CRANKS,
     DISCS,

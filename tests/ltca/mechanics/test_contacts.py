@@ -94,7 +94,7 @@ def test_a_search_in_blocks_or_another_order_is_the_search(name, tmp_path, monke
     order = np.random.default_rng(0).permutation(TURN.size)
     other = loads(solve_at_output(model, [drive], TURN[order], drive.load.torque).response)
     np.testing.assert_allclose(other, first[order], rtol=0.0, atol=ROUND_OFF * first.max())
-    monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 2)
+    monkeypatch.setattr(reducer, "POSITIONS_AT_ONCE", 8)
     other = loads(solve_at_output(model, [drive], TURN, drive.load.torque).response)
     np.testing.assert_allclose(other, first, rtol=0.0, atol=ROUND_OFF * first.max())
 
