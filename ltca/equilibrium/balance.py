@@ -11,7 +11,15 @@ from numpy.typing import NDArray
 from ltca.arrays import FloatArray, take_positions, take_rows
 from ltca.compliance.response import Response, Start
 from ltca.drive.least_torque import ROUND_OFF_BOUND
-from ltca.equilibrium.neighbours import between, have_neighbours, leading_positions, pose_between, start_between, turned
+from ltca.equilibrium.neighbours import (
+    MOST,
+    between,
+    have_neighbours,
+    leading_positions,
+    pose_between,
+    start_between,
+    turned,
+)
 from ltca.equilibrium.newton import Holding, Search
 from ltca.equilibrium.reducer import Reducer
 from ltca.errors import ConvergenceError
@@ -158,7 +166,9 @@ def _stages(
     """Yield positions to balance together, with inner unknowns to begin from: leading ones, then the others from these."""
     model, angle, moment, pose = search.model, search.angle, search.moment, search.pose
     everything, count = np.arange(angle.size), angle.size // series
-    leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count])
+    # Interpolation between more leading positions saves steps that are cheap; a start that is given is one already.
+    most = MOST if start is not None or _is_costly(model) else MOST // 2
+    leading = leading_positions(model.discs[0].geometry, angle[:count], moment[:count], most)
     alike = all(have_neighbours(each) for each in moment.reshape(series, count))
     if start is not None:
         pose[:] = start
@@ -189,13 +199,10 @@ def _stages(
     beside, alone = rest[led[rest // count]], rest[~led[rest // count]]
     # Where evaluations take long, or several cranks make positions differ: few beside the leader, then those between them.
     levels = [beside]
-    if series == 1 and leading.size < count and _is_costly(model):
+    if series == 1 and leading.size < count and (count >= LEAST_LED or _is_costly(model)):
         some = np.isin(beside, leading)
         few = np.isin(beside, leading[::COARSER])
         levels = [beside[few], beside[some & ~few], beside[~some]]
-    elif series == 1 and leading.size < count and count >= LEAST_LED:
-        some = np.isin(beside, leading)
-        levels = [beside[some], beside[~some]]
     for number, level in enumerate(levels):
         if level.size:
             yield level, _place(search, level, (np.cumsum(led) - 1)[level // count] if number == 0 else None)

@@ -13,11 +13,14 @@ from ltca.compliance.response import Start
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 
-RESOLVED = 4
+RESOLVED = 3.5
 """Leading positions in a passage of a tooth, a hole or a roller, whichever are most."""
 WORTH = 2
 """Positions for one leading, below which each might as well lead."""
-MOST = 4
+LEAST = 8
+"""Positions of a series in which some lead others."""
+MOST = 8
+"""Positions for one leading where each evaluation takes long; half of it elsewhere."""
 AROUND = 4
 """Known positions that a place between them follows, by Lagrange's polynomial; the two beside it where spacings differ."""
 UNEVEN = 2.0
@@ -28,10 +31,12 @@ Way: TypeAlias = tuple[NDArray[np.intp], FloatArray]
 
 def have_neighbours(moment: FloatArray) -> bool:
     """Return whether positions are enough, all under the same moment, for one to lead others."""
-    return moment.size >= WORTH * RESOLVED and not np.ptp(moment) > 0.0
+    return moment.size >= LEAST and not np.ptp(moment) > 0.0
 
 
-def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: FloatArray) -> NDArray[np.intp]:
+def leading_positions(
+    geometry: ContactGeometry, angle: FloatArray, moment: FloatArray, most: int = MOST
+) -> NDArray[np.intp]:
     """Return which positions of one drive to balance first, in order of their angles; all where neighbours are no help."""
     order = np.argsort(angle, kind="stable")
     place = geometry.placement
@@ -39,7 +44,7 @@ def leading_positions(geometry: ContactGeometry, angle: FloatArray, moment: Floa
         return order
     passages = max(place.reduction_ratio, place.hole_radii.shape[-1], place.roller_radii.shape[-1] // place.cranks)
     spacing = float(np.max(np.diff(angle[order])))
-    stride = min(MOST, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
+    stride = min(most, int(2.0 * np.pi / (passages * RESOLVED * spacing))) if spacing > 0.0 else 1
     if stride < WORTH:
         return order
     return np.append(order[:-1:stride], order[-1])
