@@ -63,7 +63,6 @@ def execute(arguments: argparse.Namespace) -> int:
 
 
 def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Namespace, out: Path) -> None:
-    from fem.reducer.solution import expect_shares
     from ltca.drive.engine_support import require
     from ltca.drive.single_discs import single_discs
 
@@ -74,8 +73,8 @@ def _mesh_and_write(name: str, case: str, drive: Drive, arguments: argparse.Name
     if len(singles) == 1:
         _mesh_disc(singles[0], drive.wheel_moment(), title, (0, 1), arguments, out)
     else:
-        moments, _ = expect_shares(drive, arguments.angle, drive.wheel_moment())
-        for number, (single, moment) in enumerate(zip(singles, moments.tolist(), strict=True)):
+        moment = drive.wheel_moment() / len(singles)
+        for number, single in enumerate(singles):
             print(f"disc {number}, {moment / 1e3:.6g} N·m on the wheel expected", flush=True)
             _mesh_disc(single, moment, f"{title}, disc {number}", (number, len(singles)), arguments, out)
     if drive.ring is not None:

@@ -40,14 +40,11 @@ def condense_drive(
     *,
     plane: PlaneState = "strain",
     known: tuple[RoundGroup, ...] = (),
-    ring: FloatArray | None = None,
-    by_others: ComplexArray | None = None,
 ) -> DriveModel:
     """Assemble, factorise and condense all bodies on meshes graded for the expected contacts.
 
     Contacts with an expected half-width become candidates. Pins and rollers condensed before (`known`) are reused where grading,
-    material, thickness and plane state are the same; `ring` and `by_others` are those of `DriveModel`. MeshError when a boundary
-    is missing or too coarse for a contact zone.
+    material, thickness and plane state are the same. MeshError when a boundary is missing or too coarse for a contact zone.
     """
     place, slab = Placement.of_drive(drive), _Slab(thickness=drive.disc.thickness, state=plane)
     materials, holes = drive.materials, contacts.holes
@@ -79,8 +76,6 @@ def condense_drive(
         pairs=tuple(pairs),
         placement=place,
         race_loads=race_loads,
-        ring=ring,
-        by_others=np.zeros(len(place.wheel_pin_radii), dtype=complex) if by_others is None else by_others,
     )
 
 

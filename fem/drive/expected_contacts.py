@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fem.drive.pin_supports import mean_spring
 from fem.drive.rigid_bodies import DISC_ROTATION, WHEEL_ANGLE, RigidBodies, X, Y
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.drive.engine_support import require
@@ -264,7 +265,7 @@ def guess_contacts(
     roller_modulus = 1.0 / (1.0 / hertz.outer_modulus + 1.0 / hertz.inner_modulus)
     roller_stiffness = np.pi * roller_modulus * drive.roller_length / APPROACH_LOGARITHM
     counts = [pins, rollers, len(placement.hole_radii)]
-    stiffness = np.repeat([flank_stiffness, roller_stiffness, drive.hole_stiffness], counts)
+    stiffness = np.repeat([flank_stiffness, roller_stiffness, mean_spring(drive)], counts)
     moment = drive.wheel_moment(torque) if wheel_moment is None else wheel_moment
     pose, approach = _minimise(rigid, stiffness, moment)
     ends = np.cumsum(counts)[:-1]

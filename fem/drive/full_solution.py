@@ -9,12 +9,12 @@ import numpy as np
 from fem.drive.contact_results import ContactResults
 from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes
-from fem.drive.model import DriveModel, DrivePose, PlacedContacts, RoundGroup
-from fem.drive.pose import PoseSolution, pair_forces
+from fem.drive.model import DriveModel, DrivePose, RoundGroup
+from fem.drive.pose import PoseSolution, moments_on_cranks, pair_forces
 from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import SolutionOptions
 from fem.shapes import DriveShapes
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.drive.parts import Drive
 
 
@@ -32,8 +32,6 @@ class CoarseSolution:
         For which the coarsest meshes were graded.
     meshes : DriveMeshes
         Meshes of the shapes.
-    by_others : array of complex, shape (z_P,)
-        Displacement of the seats in the wheel by the forces of other discs, mm.
     pose : DrivePose
         Loaded pose.
     wheel_moment : float
@@ -46,7 +44,6 @@ class CoarseSolution:
     shapes: DriveShapes
     contacts: ExpectedContacts
     meshes: DriveMeshes
-    by_others: ComplexArray
     pose: DrivePose
     wheel_moment: float
     options: SolutionOptions
@@ -101,7 +98,6 @@ class FullSolution:
             shapes=model.shapes,
             contacts=model.contacts,
             meshes=model.meshes,
-            by_others=model.by_others,
             pose=self.pose,
             wheel_moment=self.state.wheel_moment,
             options=self.options,
@@ -117,28 +113,15 @@ class FullSolution:
 
     @property
     def crank_moments(self) -> FloatArray:
-        """External moment that holds each crank against this disc, ccw positive, N·mm, shape (cranks,).
+        """External moment that holds each crank against this disc, ccw positive, N·mm, shape (cranks,)."""
+        return moments_on_cranks(self.model, self.pair_forces)
 
-        That of its rollers' forces on the disc about the crank's axis, as if they acted at the centre of the race, and by the
-        part `cage_speed` of the crank's angle what they take of the cage: their moment about that centre.
-        """
-        return moments_on_cranks(self.model, self.state)
+    @property
+    def pair_forces(self) -> FloatArray:
+        """Force (x, y, N) and moment about the origin (N·mm) on the round side of each pair, shape (pairs, 3)."""
+        return pair_forces(self.model, self.state.integrals, self.state.contact.pressure)
 
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
         return self.model.meshes.unknowns + self.model.unknown_count
-
-
-def moments_on_cranks(model: PlacedContacts, state: PoseSolution) -> FloatArray:
-    """Return the external moment that holds each crank, ccw positive, N·mm (`FullSolution.crank_moments`), shape (cranks,)."""
-    place = model.placement
-    forces = pair_forces(model, list(state.integrals), state.contact.pressure)
-    on_disc = np.zeros((place.cranks, 3))
-    for pair, force in zip(model.pairs, forces, strict=True):
-        if pair.kind == "roller_outer":
-            on_disc[model.crank_of(pair.index)] -= force
-    push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
-    about_race = on_disc[:, 2] - (races.conjugate() * push).imag
-    lever = races - place.crank_axes
-    return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)

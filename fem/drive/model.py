@@ -7,6 +7,7 @@ rollers. Pins and rollers that share a mesh share one factorisation and one comp
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -174,8 +175,6 @@ class PlacedContacts(ABC):
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
-    by_others : array of complex, shape (z_P,)
-        Displacement of the seats in the wheel by the forces of other discs, mm.
     """
 
     drive: Drive
@@ -185,7 +184,6 @@ class PlacedContacts(ABC):
     contacts: ExpectedContacts
     pairs: tuple[ContactPair, ...]
     placement: Placement
-    by_others: ComplexArray
 
     @abstractmethod
     def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
@@ -193,11 +191,13 @@ class PlacedContacts(ABC):
 
     @abstractmethod
     def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
-        """Return the contact problem about a pose; motions: disc x, y, rotation, wheel, rollers on their rays, then others."""
+        """Return the contact problem about a pose with pins that stand; motions: disc x, y, rotation, wheel, rollers on their
+        rays, then others.
+        """
 
     @abstractmethod
-    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
-        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
+    def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side by its pressures, MPa, shape (3, m)."""
 
     @abstractmethod
     def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
@@ -211,9 +211,23 @@ class PlacedContacts(ABC):
     def disc_displacement(self, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the disc in its own frame, at mid-width, mm, at all pressures, MPa."""
 
-    @abstractmethod
-    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
-        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
+    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
+        return np.asarray(self.resultants_of(pair, integral) @ pressure[pair.unknowns])
+
+    def forces_on_pins(self, pose: DrivePose, integrals: Sequence[PairIntegrals]) -> tuple[FloatArray, FloatArray]:
+        """Return x, y of the forces on wheel pins, in the wheel, and on shaft pins by all pressures, N/MPa, shape (2 pins, m)."""
+        on_wheel = np.zeros((2 * len(self.placement.wheel_pin_radii), self.unknown_count))
+        on_shaft = np.zeros((2 * len(self.placement.hole_radii), self.unknown_count))
+        in_wheel = self.wheel_direction(pose).conjugate()
+        for pair, integral in zip(self.pairs, integrals, strict=True):
+            if pair.kind not in ("pin", "hole"):
+                continue
+            fx, fy, _ = self.resultants_of(pair, integral)
+            along = (fx + 1j * fy) * (in_wheel if pair.kind == "pin" else 1.0)
+            rows = on_wheel if pair.kind == "pin" else on_shaft
+            rows[2 * pair.index, pair.unknowns], rows[2 * pair.index + 1, pair.unknowns] = along.real, along.imag
+        return on_wheel, on_shaft
 
     @property
     def unknown_count(self) -> int:
@@ -327,23 +341,20 @@ class DriveModel(PlacedContacts):
         Pins and rollers.
     race_loads : array of int
         Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
-    ring : array, shape (2 z_P, 2 z_P), or None
-        Displacement (x, y) of the seats of the wheel pins in the wheel by unit forces there, mm/N; None in a rigid ring.
     """
 
     disc: CondensedBody
     race: CondensedBody
     groups: tuple[RoundGroup, ...]
     race_loads: NDArray[np.intp]
-    ring: FloatArray | None
 
     def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
         """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
         return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
 
-    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
-        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
-        return np.asarray(integral.force @ pressure[pair.unknowns])
+    def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side by its pressures, MPa, shape (3, m)."""
+        return integral.force
 
     def measure_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
         """Return the weighted area of each pressure unknown of a pair, mm²."""
@@ -374,15 +385,8 @@ class DriveModel(PlacedContacts):
         carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
         return self.race.displacement(carried)
 
-    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
-        """Return the displacement of all seats by forces on the wheel pins, in the wheel, mm and N, shape (z_P,)."""
-        if self.ring is None:
-            return np.zeros(force.shape, dtype=complex)
-        moved = (self.ring @ np.stack([force.real, force.imag], axis=-1).ravel()).reshape(-1, 2)
-        return np.asarray(moved[:, 0] + 1j * moved[:, 1])
-
     def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
-        """Return the condensed contact problem linearised about a pose.
+        """Return the condensed contact problem linearised about a pose, with pins that stand.
 
         Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), then each candidate roller along its ray.
         """
@@ -396,8 +400,6 @@ class DriveModel(PlacedContacts):
         motions = np.zeros((count, 4 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
-        spring, in_wheel = self.drive.hole_stiffness, self.wheel_direction(pose).conjugate()
-        on_seats = np.zeros((2 * len(self.placement.wheel_pin_radii), count))
         by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
             own = pair.unknowns
@@ -408,16 +410,7 @@ class DriveModel(PlacedContacts):
                 motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
             if pair.kind == "pin":
                 motions[own, 3] = moment
-                loads = integral.opposite_loads
-                compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
-                along = (fx + 1j * fy) * in_wheel
-                more = self.by_others[pair.index] - pose.wheel_pin_displacements[pair.index]
-                gap[own] += along.real * more.real + along.imag * more.imag
-                on_seats[2 * pair.index, own], on_seats[2 * pair.index + 1, own] = along.real, along.imag
-            elif pair.kind == "hole":
-                moved = pose.shaft_pin_displacements[pair.index]
-                gap[own] -= fx * moved.real + fy * moved.imag
-                compliance[own, own] += (np.outer(fx, fx) + np.outer(fy, fy)) / spring
+            if pair.kind in ("pin", "hole"):
                 if pair.group >= 0:
                     loads = integral.opposite_loads
                     compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
@@ -435,8 +428,6 @@ class DriveModel(PlacedContacts):
             loads[:split, :width] = outer_integral.opposite_loads
             loads[split:, width:] = inner_integral.opposite_loads
             compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
-        if self.ring is not None:
-            compliance += on_seats.T @ self.ring @ on_seats
         external = np.zeros(4 + len(rollers))
         external[3] = -wheel_moment
         return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)

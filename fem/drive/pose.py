@@ -1,4 +1,6 @@
-"""Iteration of the pose: contact solved about the pose of the bodies, bodies moved there, gaps rebuilt.
+"""Iteration of the pose of all discs: contact solved about the pose of the bodies, bodies moved there, gaps rebuilt.
+
+The pressures of all discs are unknowns of one contact problem: discs turn one wheel, and their forces meet in what holds pins.
 
 Displacements are small about the *loaded* pose; about the nominal one the gaps would be wrong by as much as
 the approaches themselves. The rigid increments of a converged pose are zero, so that the answer does not
@@ -7,16 +9,21 @@ depend on the start.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+import scipy.linalg as sla
 from numpy.typing import NDArray
 
 from fem.contact.coupling import PairIntegrals
-from fem.contact.unilateral import ContactSolution, solve_floating_contact
+from fem.contact.unilateral import ContactProblem, ContactSolution, solve_floating_contact
 from fem.drive.model import DrivePose, PlacedContacts
-from ltca.arrays import FloatArray
+from fem.drive.pin_supports import PinSupports
+from ltca.arrays import ComplexArray, FloatArray
+from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
 
 # Well below the accuracy wanted, 0.5 µm and 0.1 %: one more step of a linearly converging iteration takes a tenth of a second.
@@ -24,6 +31,42 @@ POSE_TOLERANCE = 5.0e-5
 LOAD_TOLERANCE = 2.0e-4
 # Farthest a body may travel in one step, mm: normals are those of the old pose.
 MAX_STEP = 0.05
+# Largest change of the moment on a held wheel in the last step, by itself.
+MOMENT_TOLERANCE = 1e-8
+# Place of the rotation of the wheel among the motions of a disc.
+WHEEL = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WheelLoad:
+    """External moment on the wheel, ccw positive.
+
+    Attributes
+    ----------
+    moment : float
+        N·mm; of a held wheel a first estimate.
+    output : float or None
+        Torque on the output, ccw positive, N·mm, that a held wheel and the input balance; None where `moment` is given.
+    input_per_crank_moment : float
+        Moment of the input by that of the cranks.
+    """
+
+    moment: float
+    output: float | None = None
+    input_per_crank_moment: float = 0.0
+
+    @classmethod
+    def of_drive(cls, drive: Drive, torque: float | None = None, moment: float | None = None) -> WheelLoad:
+        """Return the load of a drive at an output torque, its own by default, whichever member is held."""
+        estimate = drive.wheel_moment(torque) if moment is None else moment
+        if not drive.wheel_is_held:
+            return cls(moment=estimate)
+        output = drive.driving_sign * (drive.load.torque if torque is None else torque)
+        return cls(moment=estimate, output=output, input_per_crank_moment=drive.input_per_crank_moment)
+
+    def balanced_by(self, crank_moment: float) -> float:
+        """Return the moment on the wheel where cranks are held by a moment, N·mm."""
+        return self.moment if self.output is None else -self.output - self.input_per_crank_moment * crank_moment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +82,7 @@ class PoseSolution:
     integrals : tuple of PairIntegrals
         Of all pairs at that pose.
     wheel_moment : float
-        External moment on the wheel, N·mm.
+        External moment on the wheel that the disc carries, N·mm.
     iterations : int
         Pose steps.
     increments : tuple of float
@@ -57,35 +100,124 @@ class PoseSolution:
     load_changes: tuple[float, ...]
 
 
-def pair_forces(model: PlacedContacts, integrals: list[PairIntegrals], pressure: FloatArray) -> FloatArray:
+def pair_forces(model: PlacedContacts, integrals: Sequence[PairIntegrals], pressure: FloatArray) -> FloatArray:
     """Return force (x, y, N) and moment about the origin (N·mm) on the round side of each pair, shape (pairs, 3)."""
     return np.array(
         [model.force_of(pair, integral, pressure) for pair, integral in zip(model.pairs, integrals, strict=True)]
     )
 
 
-def solve_pose(
-    model: PlacedContacts,
+def moments_on_cranks(model: PlacedContacts, forces: FloatArray) -> FloatArray:
+    """Return the external moment that holds each crank, ccw positive, N·mm, by `pair_forces`, shape (cranks,).
+
+    That of its rollers' forces on the disc about the crank's axis, as if they acted at the centre of the race, and by the
+    part `cage_speed` of the crank's angle what they take of the cage: their moment about that centre.
+    """
+    place = model.placement
+    on_disc = np.zeros((place.cranks, 3))
+    for pair, force in zip(model.pairs, forces, strict=True):
+        if pair.kind == "roller_outer":
+            on_disc[model.crank_of(pair.index)] -= force
+    push, races = on_disc[:, 0] + 1j * on_disc[:, 1], model.race_centres
+    about_race = on_disc[:, 2] - (races.conjugate() * push).imag
+    lever = races - place.crank_axes
+    return np.asarray((lever.conjugate() * push).imag + float(place.cage_speed) * about_race)
+
+
+def joint_problem(
+    models: Sequence[PlacedContacts],
+    supports: PinSupports,
+    poses: Sequence[DrivePose],
+    integrals: Sequence[list[PairIntegrals]],
     wheel_moment: float,
+) -> ContactProblem:
+    """Return the contact problem of all discs about their poses; motions: of the first, then of others without the wheel's."""
+    problems = [
+        model.contact_problem(pose, each, wheel_moment)
+        for model, pose, each in zip(models, poses, integrals, strict=True)
+    ]
+    count = sum(problem.gap.size for problem in problems)
+    gap = np.concatenate([problem.gap for problem in problems])
+    if len(problems) == 1:
+        compliance, motions, external = problems[0].compliance, problems[0].motions, problems[0].external
+    else:
+        compliance = np.zeros((count, count))
+        motions = np.zeros((count, sum(problem.motions.shape[1] - 1 for problem in problems) + 1))
+        external = np.zeros(motions.shape[1])
+        for own, columns, problem in zip(_unknowns(models), _motions(problems), problems, strict=True):
+            compliance[own, own] = problem.compliance
+            motions[own, columns] = problem.motions
+            external[columns] = problem.external
+    on_pins = [model.forces_on_pins(pose, each) for model, pose, each in zip(models, poses, integrals, strict=True)]
+    for flexibility, each, moved in (
+        (supports.wheel, [one for one, _ in on_pins], [pose.wheel_pin_displacements for pose in poses]),
+        (supports.shaft, [other for _, other in on_pins], [pose.shaft_pin_displacements for pose in poses]),
+    ):
+        if flexibility is None:
+            continue
+        force = each[0] if len(each) == 1 else sla.block_diag(*each)
+        here = np.concatenate(moved)
+        gap = gap - force.T @ np.stack([here.real, here.imag], axis=-1).ravel()
+        # Few contacts press pins: the others have no part in this.
+        pressed = np.flatnonzero(np.any(force != 0.0, axis=0))
+        along = force[:, pressed]
+        compliance[np.ix_(pressed, pressed)] += along.T @ flexibility @ along
+    return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)
+
+
+def _unknowns(models: Sequence[PlacedContacts]) -> list[slice]:
+    """Pressure unknowns of every disc among those of all."""
+    ends = np.cumsum([0, *(model.unknown_count for model in models)]).tolist()
+    return [slice(first, last) for first, last in pairwise(ends)]
+
+
+def _motions(problems: Sequence[ContactProblem]) -> list[NDArray[np.intp]]:
+    """Place of every motion of every disc among those of all."""
+    found, last = [], 0
+    for number, problem in enumerate(problems):
+        size = problem.motions.shape[1]
+        own = np.arange(last, last + size)
+        if number:
+            own = np.insert(own[:-1], WHEEL, WHEEL)
+        found.append(own)
+        last += size - (number > 0)
+    return found
+
+
+def solve_pose(
+    model: PlacedContacts, wheel_moment: float, *, start: DrivePose | None = None, **options: Any
+) -> PoseSolution:
+    """Solve contact and pose of one disc under a moment on the wheel, N·mm; further arguments as for `solve_poses`."""
+    supports, load = PinSupports.of_drive(model.drive), WheelLoad(moment=wheel_moment)
+    (found,) = solve_poses((model,), supports, load, None if start is None else (start,), **options)
+    return found
+
+
+def solve_poses(
+    models: Sequence[PlacedContacts],
+    supports: PinSupports,
+    load: WheelLoad,
+    starts: Sequence[DrivePose] | None = None,
     *,
-    start: DrivePose | None = None,
     start_active: NDArray[np.bool_] | None = None,
     limit: int = 60,
     pose_tolerance: float = POSE_TOLERANCE,
     progress: Callable[[str], None] | None = None,
-) -> PoseSolution:
-    """Solve contact and pose together.
+) -> tuple[PoseSolution, ...]:
+    """Solve contact and poses of all discs together.
 
     Parameters
     ----------
-    model : PlacedContacts
-        Condensed drive.
-    wheel_moment : float
-        External moment on the wheel, N·mm, ccw positive.
-    start : DrivePose, optional
-        First pose; the one the meshes were graded for by default.
+    models : sequence of PlacedContacts
+        Condensed discs with their pins and rollers.
+    supports : PinSupports
+        What holds the pins.
+    load : WheelLoad
+        Moment on the wheel, or what a held wheel balances.
+    starts : sequence of DrivePose, optional
+        First poses, at one wheel angle; those the meshes were graded for by default.
     start_active : array of bool, optional
-        First active set.
+        First active set, disc after disc.
     limit : int
         Pose steps.
     pose_tolerance : float
@@ -95,85 +227,154 @@ def solve_pose(
 
     Returns
     -------
-    PoseSolution
-        Converged to that tolerance and `LOAD_TOLERANCE`.
+    tuple of PoseSolution
+        Of every disc, converged to that tolerance and `LOAD_TOLERANCE`.
 
     Raises
     ------
     ConvergenceError
-        When pose or contact do not settle, or nothing can carry the load.
+        When poses or contact do not settle, or nothing can carry the load.
     """
-    pose = model.start_pose() if start is None else start
-    active = model.start_active() if start_active is None else start_active
+    poses = [model.start_pose() for model in models] if starts is None else list(starts)
+    poses = _at_one_wheel(poses)
+    active = np.concatenate([model.start_active() for model in models]) if start_active is None else start_active
     increments: list[float] = []
     changes: list[float] = []
-    loads = np.zeros(len(model.pairs))
+    loads = np.zeros(sum(len(model.pairs) for model in models))
+    moment = load.moment
     for iteration in range(1, limit + 1):
-        integrals = [model.integrate(pair, pose) for pair in model.pairs]
-        problem = model.contact_problem(pose, integrals, wheel_moment)
+        integrals = [
+            [model.integrate(pair, pose) for pair in model.pairs] for model, pose in zip(models, poses, strict=True)
+        ]
+        problem = joint_problem(models, supports, poses, integrals, moment)
         contact = solve_floating_contact(problem, active)
-        forces = pair_forces(model, integrals, contact.pressure)
-        previous, loads = loads, np.hypot(forces[:, 0], forces[:, 1])
-        following, increment = _move(model, pose, contact, forces)
+        parts = _by_disc(models, contact)
+        forces = [
+            pair_forces(model, each, part.pressure) for model, each, part in zip(models, integrals, parts, strict=True)
+        ]
+        size = np.concatenate([np.hypot(each[:, 0], each[:, 1]) for each in forces])
+        previous, loads = loads, size
+        following, increment = _move(models, supports, poses, parts, forces)
         increments.append(increment)
         changes.append(float(np.max(np.abs(loads - previous)) / np.max(loads)))
+        held_by = load.balanced_by(
+            float(sum(moments_on_cranks(model, each).sum() for model, each in zip(models, forces, strict=True)))
+        )
+        off = abs(held_by - moment)
         if progress is not None:
             progress(
                 f"pose {iteration}: increment {1e3 * increment:.3g} µm, loads changed by {100 * changes[-1]:.2g} %, "
                 f"{contact.iterations} active-set steps"
             )
-        if increment < pose_tolerance and changes[-1] < LOAD_TOLERANCE:
-            return PoseSolution(
-                pose=following,
-                contact=contact,
-                integrals=tuple(integrals),
-                wheel_moment=wheel_moment,
-                iterations=iteration,
-                increments=tuple(increments),
-                load_changes=tuple(changes),
+        if increment < pose_tolerance and changes[-1] < LOAD_TOLERANCE and off <= MOMENT_TOLERANCE * abs(moment):
+            carried = [_wheel_moment(model, each) for model, each in zip(models, forces, strict=True)]
+            if len(models) == 1:
+                carried = [moment]
+            return tuple(
+                PoseSolution(
+                    pose=pose,
+                    contact=part,
+                    integrals=tuple(each),
+                    wheel_moment=by_disc,
+                    iterations=iteration,
+                    increments=tuple(increments),
+                    load_changes=tuple(changes),
+                )
+                for pose, part, each, by_disc in zip(following, parts, integrals, carried, strict=True)
             )
-        pose, active = following, contact.active
+        poses, active, moment = following, contact.active, held_by
     raise ConvergenceError(
-        f"the loaded pose at crank angle {model.crank_angle:g} rad did not settle in {limit} steps; increments in mm",
+        f"the loaded pose at crank angle {models[0].crank_angle:g} rad did not settle in {limit} steps; increments in mm",
         increments,
     )
 
 
+def _at_one_wheel(poses: Sequence[DrivePose]) -> list[DrivePose]:
+    """The poses with the wheel where it stands in the mean."""
+    if len(poses) == 1:
+        return list(poses)
+    angle = float(np.mean([pose.wheel_angle for pose in poses]))
+    return [replace(pose, wheel_angle=angle) for pose in poses]
+
+
+def _wheel_moment(model: PlacedContacts, forces: FloatArray) -> float:
+    """External moment on the wheel against the forces of a disc, N·mm."""
+    return -float(sum(force[2] for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "pin"))
+
+
+def _by_disc(models: Sequence[PlacedContacts], found: ContactSolution) -> list[ContactSolution]:
+    """The solution of every disc, with the motion of the wheel among its own."""
+    if len(models) == 1:
+        return [found]
+    parts, last = [], 0
+    for number, own in enumerate(_unknowns(models)):
+        size = 4 + len(models[number].rollers) - (number > 0)
+        motion = found.motion[last : last + size]
+        motion = np.insert(motion, WHEEL, found.motion[WHEEL]) if number else motion
+        last += size
+        parts.append(
+            replace(
+                found,
+                pressure=found.pressure[own],
+                motion=motion,
+                opening=found.opening[own],
+                active=found.active[own],
+            )
+        )
+    return parts
+
+
 def _move(
-    model: PlacedContacts,
-    pose: DrivePose,
-    contact: ContactSolution,
-    forces: FloatArray,
-) -> tuple[DrivePose, float]:
-    """Return the pose found and the largest increment, mm."""
-    # Further motions are tilts: gaps are linear in them, each step finds all of them anew.
-    motion = contact.motion[: 4 + len(model.rollers)].copy()
-    shapes = model.shapes
-    reach = np.ones(len(motion))
-    reach[2] = shapes.disc.flank.profile.tip_radius
-    reach[3] = float(np.abs(model.placement.wheel_pin_centres).max())
-    largest = float(np.max(np.abs(motion * reach)))
-    motion *= min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
-    distances = pose.roller_distances.copy()
-    for column, roller in enumerate(model.rollers, start=4):
-        distances[roller] += motion[column]
-    pins, on_seats = np.zeros_like(pose.shaft_pin_displacements), np.zeros_like(pose.wheel_pin_displacements)
-    in_wheel = model.wheel_direction(pose).conjugate()
-    for pair, force in zip(model.pairs, forces, strict=True):
-        if pair.kind == "hole":
-            pins[pair.index] = complex(force[0], force[1]) / model.drive.hole_stiffness
-        elif pair.kind == "pin":
-            on_seats[pair.index] = complex(force[0], force[1]) * in_wheel
-    seats = model.by_others + model.seats_moved_by(on_seats)
-    change = np.concatenate([pins - pose.shaft_pin_displacements, seats - pose.wheel_pin_displacements])
-    increment = max(largest, float(np.max(np.abs(change), initial=0.0)))
-    moved = DrivePose(
-        disc_x=pose.disc_x + float(motion[0]),
-        disc_y=pose.disc_y + float(motion[1]),
-        disc_rotation=pose.disc_rotation + float(motion[2]),
-        wheel_angle=pose.wheel_angle + float(motion[3]),
-        roller_distances=distances,
-        shaft_pin_displacements=pins,
-        wheel_pin_displacements=seats,
-    )
-    return moved, increment
+    models: Sequence[PlacedContacts],
+    supports: PinSupports,
+    poses: Sequence[DrivePose],
+    contacts: Sequence[ContactSolution],
+    forces: Sequence[FloatArray],
+) -> tuple[list[DrivePose], float]:
+    """Return the poses found and the largest increment, mm."""
+    motions, largest = [], 0.0
+    for model, contact in zip(models, contacts, strict=True):
+        # Further motions are tilts: gaps are linear in them, each step finds all of them anew.
+        motion = contact.motion[: 4 + len(model.rollers)]
+        reach = np.ones(len(motion))
+        reach[2] = model.shapes.disc.flank.profile.tip_radius
+        reach[WHEEL] = float(np.abs(model.placement.wheel_pin_centres).max())
+        largest = max(largest, float(np.max(np.abs(motion * reach))))
+        motions.append(motion)
+    part = min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
+    on_wheel, on_shaft = forces_on_pins(models, poses, forces)
+    seats, pins = supports.moved(on_wheel, on_shaft)
+    increment, found = largest, []
+    for model, pose, motion, seat, pin in zip(models, poses, motions, seats, pins, strict=True):
+        change = np.concatenate([pin - pose.shaft_pin_displacements, seat - pose.wheel_pin_displacements])
+        increment = max(increment, float(np.max(np.abs(change), initial=0.0)))
+        distances = pose.roller_distances.copy()
+        distances[list(model.rollers)] += part * motion[4:]
+        found.append(
+            DrivePose(
+                disc_x=pose.disc_x + part * float(motion[0]),
+                disc_y=pose.disc_y + part * float(motion[1]),
+                disc_rotation=pose.disc_rotation + part * float(motion[2]),
+                wheel_angle=pose.wheel_angle + part * float(motion[WHEEL]),
+                roller_distances=distances,
+                shaft_pin_displacements=pin,
+                wheel_pin_displacements=seat,
+            )
+        )
+    return found, increment
+
+
+def forces_on_pins(
+    models: Sequence[PlacedContacts], poses: Sequence[DrivePose], forces: Sequence[FloatArray]
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the forces on wheel pins, in the wheel, and on shaft pins by `pair_forces` of all discs, N, shapes (discs, pins)."""
+    on_wheel = np.zeros((len(models), len(poses[0].wheel_pin_displacements)), dtype=complex)
+    on_shaft = np.zeros((len(models), len(poses[0].shaft_pin_displacements)), dtype=complex)
+    for disc, (model, pose, acting) in enumerate(zip(models, poses, forces, strict=True)):
+        in_wheel = model.wheel_direction(pose).conjugate()
+        for pair, force in zip(model.pairs, acting, strict=True):
+            if pair.kind == "hole":
+                on_shaft[disc, pair.index] = complex(force[0], force[1])
+            elif pair.kind == "pin":
+                on_wheel[disc, pair.index] = complex(force[0], force[1]) * in_wheel
+    return on_wheel, on_shaft

@@ -1,4 +1,4 @@
-"""Full solution of a drive at one crank angle: coarse, graded anew, fine, checked.
+"""Full solution of all discs of a drive at one crank angle: coarse, graded anew, fine, checked.
 
 1. `fem.drive.expected_contacts` guesses contacts; coarse meshes with wide zones give the loads that the flexible
    bodies really share.
@@ -10,7 +10,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -26,14 +26,14 @@ from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
 from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
-from fem.drive.pose import POSE_TOLERANCE, PoseSolution, solve_pose
+from fem.drive.pin_supports import PinSupports
+from fem.drive.pose import POSE_TOLERANCE, PoseSolution, WheelLoad, solve_poses
 from fem.drive.rigid_bodies import RigidBodies
-from fem.drive.ring import ring_of_seats
 from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -57,80 +57,26 @@ SIZE_RESERVE = 0.96
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Task:
-    """What stays the same through all stages of one solution; `approach` is the largest overlap in the guess, mm."""
+class _Disc:
+    """One disc with its pins and rollers; `approach` is the largest overlap in the guess, mm."""
 
     drive: Drive
     rigid: RigidBodies
     shapes: DriveShapes
-    moment: float
-    options: SolutionOptions
+    guess: ExpectedContacts
     approach: float
-    say: Callable[[str], None]
-    watch: _Stopwatch
-    ring: FloatArray | None
-    by_others: ComplexArray | None
 
-    def solve_guess(
-        self, guess: ExpectedContacts, start: tuple[float, float, float, float] | None, rounds: tuple[RoundGroup, ...]
-    ) -> tuple[DriveModel, PoseSolution]:
-        """Solve on coarse meshes wherever the guess has a load."""
-        place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
-        loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
-        contacts = self.grade(self.rigid, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
-        self.watch.lap("guess")
-        self.say("coarse meshes")
-        model = self.condense_coarse(contacts, rounds)
-        first = None if start is None else model.start_pose(start)
-        solution = solve_pose(model, self.moment, start=first, progress=self.say)
-        self.watch.lap("coarse")
-        return model, solution
-
-    def condense_coarse(self, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
-        coarse = SolutionOptions(
-            size=max(COARSE_SIZE, self.options.size), plane=self.options.plane, growth=COARSE_GROWTH
-        )
-        try:
-            return self.condense(contacts, self.mesh(contacts, coarse, rounds), rounds)
-        except MeshError:
-            # Fast growth in a narrow place may end in too flat triangles; a drive is not refused for that.
-            slow = replace(coarse, growth=self.options.growth)
-            return self.condense(contacts, self.mesh(contacts, slow, rounds), rounds)
-
-    def solve_graded(
-        self, model: DriveModel, solution: PoseSolution, grading: int, rounds: tuple[RoundGroup, ...]
-    ) -> tuple[DriveModel, PoseSolution]:
-        """Solve on meshes graded for the contacts of another solution."""
-        results, pose = summarise_contacts(model, solution), solution.pose
-        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-        loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
-        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
-        rigid = self.rigid.with_pins_moved(pose.wheel_pin_displacements)
-        contacts = self.grade(rigid, place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
-        self.say("meshes")
-        meshes = self.mesh(contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), rounds)
-        self.watch.lap("mesh")
-        graded = self.condense(contacts, meshes, rounds)
-        self.watch.lap("assembly and factorisation")
-        found = solve_pose(graded, self.moment, start=solution.pose, progress=self.say)
-        self.watch.lap("contact and pose")
-        return graded, found
-
-    def mesh(self, contacts: ExpectedContacts, options: SolutionOptions, rounds: tuple[RoundGroup, ...]) -> DriveMeshes:
-        known = {group.made_of.grading: group.body for group in rounds}
-        return mesh_drive(self.shapes, contacts, options, known=known)
-
-    def condense(self, contacts: ExpectedContacts, meshes: DriveMeshes, rounds: tuple[RoundGroup, ...]) -> DriveModel:
-        return condense_drive(
-            self.drive,
-            self.shapes,
-            contacts,
-            meshes,
-            plane=self.options.plane,
-            known=rounds,
-            ring=self.ring,
-            by_others=self.by_others,
+    @classmethod
+    def of_single(cls, drive: Drive, crank_angle: float, wheel_moment: float) -> _Disc:
+        """Return the disc of a drive of one under a moment on the wheel, N·mm."""
+        rigid = RigidBodies.of_drive(drive, crank_angle)
+        guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
+        return cls(
+            drive=drive,
+            rigid=rigid,
+            shapes=DriveShapes.of_drive(drive),
+            guess=guess,
+            approach=_largest_approach(rigid, guess),
         )
 
     def grade(
@@ -143,15 +89,112 @@ class _Task:
         share: float,
         deformed: DeformedContacts | None = None,
     ) -> ExpectedContacts:
+        """Return the contacts to grade meshes for."""
         return grade_contacts(
-            self.drive,
-            rigid,
-            *pose,
-            loads,
-            margin=margin * self.approach,
-            smallest_share=share,
-            deformed=deformed,
+            self.drive, rigid, *pose, loads, margin=margin * self.approach, smallest_share=share, deformed=deformed
         )
+
+    def guessed(self) -> ExpectedContacts:
+        """Return the contacts of the coarse meshes: wherever the guess has a load."""
+        guess = self.guess
+        place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
+        loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
+        return self.grade(self.rigid, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
+
+    def graded(self, model: DriveModel, solution: PoseSolution, grading: int) -> ExpectedContacts:
+        """Return the contacts of a solution on other meshes."""
+        results, pose = summarise_contacts(model, solution), solution.pose
+        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
+        loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
+        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
+        margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
+        rigid = self.rigid.with_pins_moved(pose.wheel_pin_displacements)
+        return self.grade(rigid, place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Task:
+    """What stays the same through all stages of one solution."""
+
+    discs: tuple[_Disc, ...]
+    supports: PinSupports
+    load: WheelLoad
+    options: SolutionOptions
+    pose_tolerance: float
+    say: Callable[[str], None]
+    watch: _Stopwatch
+
+    def solve_guess(
+        self, start: tuple[float, float, float, float] | None, rounds: tuple[RoundGroup, ...]
+    ) -> tuple[list[DriveModel], tuple[PoseSolution, ...]]:
+        """Solve on coarse meshes; `start` is that of every disc."""
+        contacts = [disc.guessed() for disc in self.discs]
+        self.watch.lap("guess")
+        self.say("coarse meshes")
+        models = list[DriveModel]()
+        for disc, expected in zip(self.discs, contacts, strict=True):
+            models.append(self.condense_coarse(disc, expected, _with_groups(rounds, models)))
+        starts = None if start is None else [model.start_pose(start) for model in models]
+        found = solve_poses(models, self.supports, self.load, starts, progress=self.say)
+        self.watch.lap("coarse")
+        return models, found
+
+    def condense_coarse(self, disc: _Disc, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
+        coarse = SolutionOptions(
+            size=max(COARSE_SIZE, self.options.size), plane=self.options.plane, growth=COARSE_GROWTH
+        )
+        try:
+            return self.condense(disc, contacts, self.mesh(disc, contacts, coarse, rounds), rounds)
+        except MeshError:
+            # Fast growth in a narrow place may end in too flat triangles; a drive is not refused for that.
+            slow = replace(coarse, growth=self.options.growth)
+            return self.condense(disc, contacts, self.mesh(disc, contacts, slow, rounds), rounds)
+
+    def solve_graded(
+        self,
+        models: Sequence[DriveModel],
+        found: Sequence[PoseSolution],
+        complaints: Sequence[str],
+        grading: int,
+        rounds: tuple[RoundGroup, ...],
+    ) -> tuple[list[DriveModel], tuple[PoseSolution, ...]]:
+        """Solve on meshes graded for the contacts of another solution, those of discs without complaint as they are."""
+        graded, made = list(models), list[DriveModel]()
+        for number, (disc, model, own) in enumerate(zip(self.discs, models, found, strict=True)):
+            if not complaints[number]:
+                continue
+            contacts = disc.graded(model, own, grading)
+            self.say("meshes" if len(self.discs) == 1 else f"disc {number}: meshes")
+            known = _with_groups(rounds, made)
+            meshes = self.mesh(disc, contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), known)
+            self.watch.lap("mesh")
+            graded[number] = self.condense(disc, contacts, meshes, known)
+            made.append(graded[number])
+            self.watch.lap("assembly and factorisation")
+        starts = [each.pose for each in found]
+        solved = solve_poses(
+            graded, self.supports, self.load, starts, pose_tolerance=self.pose_tolerance, progress=self.say
+        )
+        self.watch.lap("contact and pose")
+        return graded, solved
+
+    def mesh(
+        self, disc: _Disc, contacts: ExpectedContacts, options: SolutionOptions, rounds: tuple[RoundGroup, ...]
+    ) -> DriveMeshes:
+        known = {group.made_of.grading: group.body for group in rounds}
+        return mesh_drive(disc.shapes, contacts, options, known=known)
+
+    def condense(
+        self, disc: _Disc, contacts: ExpectedContacts, meshes: DriveMeshes, rounds: tuple[RoundGroup, ...]
+    ) -> DriveModel:
+        return condense_drive(disc.drive, disc.shapes, contacts, meshes, plane=self.options.plane, known=rounds)
+
+
+def _with_groups(rounds: tuple[RoundGroup, ...], models: Sequence[DriveModel]) -> tuple[RoundGroup, ...]:
+    """Pins and rollers known before and those of other discs."""
+    for model in models:
+        rounds = keep_rounds(rounds, model.groups)
+    return rounds
 
 
 class _Stopwatch:
@@ -192,8 +235,10 @@ def solve_drive(
         Element size, plane state, fine walls.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
-    start, rounds, progress
-        As for `solve_disc`.
+    start : tuple of four floats, optional
+        First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
+    rounds, progress
+        As for `solve_discs`.
 
     Returns
     -------
@@ -203,175 +248,48 @@ def solve_drive(
     Raises
     ------
     ConvergenceError, MemoryLimitError
-        As for `solve_disc`.
+        As for `solve_discs`.
     DriveError
-        As for `solve_disc`; for several discs, and where the wheel is held: its moment follows from the solution.
+        As for `solve_discs`; for several discs, and where the wheel is held: its moment follows from the solution.
     """
     require_one_disc(drive)
     if drive.wheel_is_held:
         said = "must be pin-shaft for a moment on the wheel that is known; where the wheel is held it follows from the solution"
         raise DriveError([Problem.of("installation.held", f"= {drive.installation.held}", said)])
-    (single,) = single_discs(drive)
-    moment = drive.wheel_moment(torque)
-    return solve_disc(single, crank_angle, moment, options, start=start, rounds=rounds, progress=progress)
+    load = WheelLoad.of_drive(drive, torque)
+    (found,) = solve_discs(drive, crank_angle, load, options, start=start, rounds=rounds, progress=progress)
+    return found
 
 
 @names_unit_mistakes
-def solve_disc(
+def solve_discs(
     drive: Drive,
     crank_angle: float,
-    wheel_moment: float,
+    load: WheelLoad,
     options: SolutionOptions = DEFAULT_OPTIONS,
     *,
     start: tuple[float, float, float, float] | None = None,
     rounds: tuple[RoundGroup, ...] = (),
-    by_others: ComplexArray | None = None,
+    pose_tolerance: float = POSE_TOLERANCE,
     progress: Callable[[str], None] | None = None,
-) -> FullSolution:
-    """Solve one disc with wheel, crank and pin shaft at one crank angle.
+) -> tuple[FullSolution, ...]:
+    """Solve all discs with wheel, cranks and pin shaft at one crank angle.
 
     Parameters
     ----------
     drive : Drive
-        Of one disc (`ltca.drive.single_discs`).
+        The drive in one case.
     crank_angle : float
         φ_C, rad.
-    wheel_moment : float
-        External moment on the wheel that the disc carries, ccw positive, N·mm.
+    load : WheelLoad
+        Moment on the wheel, or what a held wheel balances.
     options : SolutionOptions
         Element size, plane state, fine walls.
     start : tuple of four floats, optional
-        First pose (disc x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
+        First pose of every disc (x, y, mm; disc rotation, wheel angle, rad); that of the guess by default.
     rounds : tuple of RoundGroup
         Condensed pins and rollers of another solution (`FullSolution.rounds`), of any crank angle or disc: they save time
         and change no bit of the result.
-    by_others : array of complex, shape (z_P,), optional
-        Displacement of the seats of the wheel pins in the wheel by the forces of other discs on the ring, mm.
-    progress : callable, optional
-        Called with one line for each step.
-
-    Returns
-    -------
-    FullSolution
-        Accepted solution.
-
-    Raises
-    ------
-    ConvergenceError
-        When nothing can carry the load or an iteration does not settle.
-    DriveError
-        For several discs, and for what full finite elements refuse (`ltca.drive.engine_support`).
-    MemoryLimitError
-        When the meshes would not fit into memory.
-    """
-    require(drive, "full FE")
-    say, watch = progress or (lambda _: None), _Stopwatch()
-    shapes, rigid = DriveShapes.of_drive(drive), RigidBodies.of_drive(drive, crank_angle)
-    guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
-    task = _Task(
-        drive=drive,
-        rigid=rigid,
-        shapes=shapes,
-        moment=wheel_moment,
-        options=options,
-        approach=_largest_approach(rigid, guess),
-        say=say,
-        watch=watch,
-        ring=None if drive.ring is None else ring_of_seats(drive),
-        by_others=by_others,
-    )
-    require_model_memory([(shapes, guess)], options)
-    model, solution = task.solve_guess(guess, start, rounds)
-    rounds, complaint = keep_rounds(rounds, model.groups), ""
-    for grading in range(1, MAX_GRADINGS + 1):
-        model, solution = task.solve_graded(model, solution, grading, rounds)
-        rounds = keep_rounds(rounds, model.groups)
-        results = summarise_contacts(model, solution)
-        complaint = find_shortcoming(model, solution, results, options.size)
-        watch.lap("check")
-        if not complaint:
-            return FullSolution(
-                model=model,
-                state=solution,
-                contacts=results,
-                options=options,
-                pose_iterations=solution.iterations,
-                rounds=rounds,
-                seconds=watch.total(),
-            )
-        say(f"meshes graded anew ({grading}): {complaint}")
-    hint = "; use smaller elements" if options.size > COARSE_SIZE else ""
-    raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
-
-
-def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
-    """Solve another output torque, N·mm, on the meshes and factors of a solution at the same crank angle."""
-    return solve_moment(previous, previous.model.drive.wheel_moment(torque), progress=progress)
-
-
-def solve_moment(
-    previous: FullSolution,
-    wheel_moment: float,
-    *,
-    pose_tolerance: float = POSE_TOLERANCE,
-    regraded: bool = True,
-    progress: Callable[[str], None] | None = None,
-) -> FullSolution:
-    """Solve for another moment on the wheel, N·mm, on the meshes of a solution at the same crank angle where they serve.
-
-    The pose has converged when no increment is larger than `pose_tolerance`, mm. Where the meshes do not serve, new ones are
-    graded; with `regraded` false the meshes stay, whatever their elements, and ConvergenceError says why they do not serve.
-    """
-    watch = _Stopwatch()
-    model = previous.model
-    solution = solve_pose(
-        model,
-        wheel_moment,
-        start=previous.pose,
-        start_active=previous.state.contact.active,
-        pose_tolerance=pose_tolerance,
-        progress=progress,
-    )
-    watch.lap("contact and pose")
-    results = summarise_contacts(model, solution)
-    if not regraded:
-        _require_zones(model, solution, results)
-    elif find_shortcoming(model, solution, results, previous.options.size):
-        return solve_disc(
-            model.drive,
-            model.crank_angle,
-            wheel_moment,
-            previous.options,
-            rounds=previous.rounds,
-            by_others=model.by_others,
-            progress=progress,
-        )
-    return replace(
-        previous,
-        state=solution,
-        contacts=results,
-        pose_iterations=solution.iterations,
-        seconds=watch.total(),
-    )
-
-
-def refine_solution(
-    coarse: CoarseSolution,
-    *,
-    rounds: tuple[RoundGroup, ...] = (),
-    pose_tolerance: float = POSE_TOLERANCE,
-    progress: Callable[[str], None] | None = None,
-) -> FullSolution:
-    """Solve under the same moment on the meshes of a solution with every element divided into four.
-
-    Contact zones stay where they are, with twice the pressure unknowns; a ring is refined likewise.
-
-    Parameters
-    ----------
-    coarse : CoarseSolution
-        Of a solution on coarser meshes (`FullSolution.coarse`), whose pose starts the iteration.
-    rounds : tuple of RoundGroup
-        Condensed pins and rollers of another disc so refined.
     pose_tolerance : float
         Largest rigid increment of a converged pose, mm.
     progress : callable, optional
@@ -379,56 +297,186 @@ def refine_solution(
 
     Returns
     -------
-    FullSolution
+    tuple of FullSolution
+        Accepted solution of every disc.
+
+    Raises
+    ------
+    ConvergenceError
+        When nothing can carry the load or an iteration does not settle.
+    DriveError
+        For what full finite elements refuse (`ltca.drive.engine_support`).
+    MemoryLimitError
+        When the meshes would not fit into memory.
+    """
+    require(drive, "full FE")
+    say, watch, singles = progress or (lambda _: None), _Stopwatch(), single_discs(drive)
+    discs = tuple(_Disc.of_single(single, crank_angle, load.moment / len(singles)) for single in singles)
+    require_model_memory([(disc.shapes, disc.guess) for disc in discs], options)
+    task = _Task(
+        discs=discs,
+        supports=PinSupports.of_drive(drive),
+        load=load,
+        options=options,
+        pose_tolerance=pose_tolerance,
+        say=say,
+        watch=watch,
+    )
+    models, found = task.solve_guess(start, rounds)
+    rounds, complaints = _with_groups(rounds, models), ["coarse"] * len(discs)
+    for grading in range(1, MAX_GRADINGS + 1):
+        models, found = task.solve_graded(models, found, complaints, grading, rounds)
+        rounds = _with_groups(rounds, models)
+        results = [summarise_contacts(model, own) for model, own in zip(models, found, strict=True)]
+        complaints = [
+            find_shortcoming(model, own, contacts, options.size)
+            for model, own, contacts in zip(models, found, results, strict=True)
+        ]
+        watch.lap("check")
+        if not any(complaints):
+            return _solutions(models, found, results, options, rounds, watch)
+        complaint = next(filter(None, complaints))
+        say(f"meshes graded anew ({grading}): {complaint}")
+    hint = "; use smaller elements" if options.size > COARSE_SIZE else ""
+    raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
+
+
+def _solutions(
+    models: Sequence[DriveModel],
+    found: Sequence[PoseSolution],
+    results: Sequence[ContactResults],
+    options: SolutionOptions,
+    rounds: tuple[RoundGroup, ...],
+    watch: _Stopwatch,
+) -> tuple[FullSolution, ...]:
+    seconds = watch.total()
+    return tuple(
+        FullSolution(
+            model=model,
+            state=own,
+            contacts=contacts,
+            options=options,
+            pose_iterations=own.iterations,
+            rounds=rounds,
+            seconds=seconds,
+        )
+        for model, own, contacts in zip(models, found, results, strict=True)
+    )
+
+
+def solve_load(previous: FullSolution, torque: float, *, progress: Callable[[str], None] | None = None) -> FullSolution:
+    """Solve another output torque, N·mm, of one disc on the meshes and factors of a solution at the same crank angle.
+
+    New meshes are graded where those do not serve.
+    """
+    drive = previous.model.drive
+    load = WheelLoad.of_drive(drive, torque)
+    (found,) = solve_again(drive, (previous,), load, progress=progress)
+    if find_shortcoming(found.model, found.state, found.contacts, previous.options.size):
+        (found,) = solve_discs(
+            drive, previous.model.crank_angle, load, previous.options, rounds=previous.rounds, progress=progress
+        )
+    return found
+
+
+def solve_again(
+    drive: Drive,
+    previous: Sequence[FullSolution],
+    load: WheelLoad,
+    *,
+    pose_tolerance: float = POSE_TOLERANCE,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[FullSolution, ...]:
+    """Solve all discs of a drive from a solution on its meshes, which are kept; whether they serve is not asked."""
+    watch, options = _Stopwatch(), previous[0].options
+    models = [each.model for each in previous]
+    found = solve_poses(
+        models,
+        PinSupports.of_drive(drive, options.halvings),
+        load,
+        [each.pose for each in previous],
+        start_active=np.concatenate([each.state.contact.active for each in previous]),
+        pose_tolerance=pose_tolerance,
+        progress=progress,
+    )
+    watch.lap("contact and pose")
+    results = [summarise_contacts(model, own) for model, own in zip(models, found, strict=True)]
+    return _solutions(models, found, results, options, previous[-1].rounds, watch)
+
+
+def refine_discs(
+    drive: Drive,
+    load: WheelLoad,
+    coarse: Sequence[CoarseSolution],
+    *,
+    pose_tolerance: float = POSE_TOLERANCE,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[FullSolution, ...]:
+    """Solve all discs on the meshes of a solution with every element divided into four.
+
+    Contact zones stay where they are, with twice the pressure unknowns; a ring is refined likewise.
+
+    Parameters
+    ----------
+    drive : Drive
+        All of it.
+    load : WheelLoad
+        That of the solution.
+    coarse : sequence of CoarseSolution
+        Of the solution on coarser meshes (`FullSolution.coarse`), whose poses start the iteration.
+    pose_tolerance : float
+        Largest rigid increment of a converged pose, mm.
+    progress : callable, optional
+        Called with one line for each step.
+
+    Returns
+    -------
+    tuple of FullSolution
         With `fem.options.SolutionOptions.halvings` increased by one.
 
     Raises
     ------
     ConvergenceError
-        When the pose does not settle, or the contacts outgrow the zones of the coarser meshes.
+        When the poses do not settle, or the contacts outgrow the zones of the coarser meshes.
     MemoryLimitError
         When the refined meshes would not fit into memory.
     """
-    say, watch = progress or (lambda _: None), _Stopwatch()
-    unknowns, drive = coarse.refined_unknowns, coarse.drive
+    say, watch, options = progress or (lambda _: None), _Stopwatch(), coarse[0].options
+    options = replace(options, halvings=options.halvings + 1)
+    unknowns = sum(own.refined_unknowns for own in coarse)
     require_memory(unknowns, solution_memory(unknowns), "the refined mesh")
-    options = replace(coarse.options, halvings=coarse.options.halvings + 1)
-    say(f"meshes halved, {unknowns:,} unknowns")
-    meshes = coarse.meshes.refined(coarse.shapes)
-    watch.lap("mesh")
-    model = condense_drive(
-        drive,
-        coarse.shapes,
-        coarse.contacts,
-        meshes,
-        plane=options.plane,
-        known=rounds,
-        ring=None if drive.ring is None else ring_of_seats(drive, options.halvings),
-        by_others=coarse.by_others,
+    models, rounds = list[DriveModel](), tuple[RoundGroup, ...]()
+    for own in coarse:
+        say(f"meshes halved, {own.refined_unknowns:,} unknowns")
+        meshes = own.meshes.refined(own.shapes)
+        watch.lap("mesh")
+        model = condense_drive(own.drive, own.shapes, own.contacts, meshes, plane=options.plane, known=rounds)
+        rounds = keep_rounds(rounds, model.groups)
+        models.append(model)
+        watch.lap("assembly and factorisation")
+    found = solve_poses(
+        models,
+        PinSupports.of_drive(drive, options.halvings),
+        load,
+        [own.pose for own in coarse],
+        pose_tolerance=pose_tolerance,
+        progress=progress,
     )
-    watch.lap("assembly and factorisation")
-    found = solve_pose(model, coarse.wheel_moment, start=coarse.pose, pose_tolerance=pose_tolerance, progress=progress)
     watch.lap("contact and pose")
-    results = summarise_contacts(model, found)
-    _require_zones(model, found, results)
-    return FullSolution(
-        model=model,
-        state=found,
-        contacts=results,
-        options=options,
-        pose_iterations=found.iterations,
-        rounds=keep_rounds(rounds, model.groups),
-        seconds=watch.total(),
-    )
+    results = [summarise_contacts(model, own) for model, own in zip(models, found, strict=True)]
+    solved = _solutions(models, found, results, options, rounds, watch)
+    require_zones(solved)
+    return solved
 
 
-def _require_zones(model: DriveModel, solution: PoseSolution, results: ContactResults) -> None:
+def require_zones(discs: Sequence[FullSolution]) -> None:
     """Raise ConvergenceError when the contacts outgrow the zones of meshes that are kept, whatever the size of their elements."""
-    if complaint := find_shortcoming(model, solution, results):
-        raise ConvergenceError(
-            f"nested meshes do not serve the solution at crank angle {model.crank_angle:g} rad: {complaint}; "
-            "use smaller elements"
-        )
+    for disc in discs:
+        if complaint := find_shortcoming(disc.model, disc.state, disc.contacts):
+            raise ConvergenceError(
+                f"nested meshes do not serve the solution at crank angle {disc.model.crank_angle:g} rad: {complaint}; "
+                "use smaller elements"
+            )
 
 
 def _largest_approach(rigid: RigidBodies, guess: ExpectedContacts) -> float:

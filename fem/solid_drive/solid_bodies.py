@@ -81,7 +81,6 @@ def condense_solids(
         contacts=contacts,
         pairs=tuple(pairs),
         placement=place,
-        by_others=np.zeros(len(place.wheel_pin_radii), dtype=complex),
         widths=widths,
         grids=grids,
         disc=disc,

@@ -22,7 +22,7 @@ from fem.solid_contact.pressing import opening_of_motion, weighted_gap
 from fem.solid_contact.reliefs import relief_of
 from fem.solid_contact.widths import WidthGrid
 from fem.solid_drive.along_width import DriveWidths, lean_apart
-from ltca.arrays import ComplexArray, FloatArray
+from ltca.arrays import FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,10 +87,6 @@ class SolidModel(PlacedContacts):
         """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
         return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
 
-    def seats_moved_by(self, force: ComplexArray) -> ComplexArray:
-        """Return the displacement of the seats of the wheel pins: none in a rigid wheel."""
-        return np.zeros(force.shape, dtype=complex)
-
     def pressures_of(self, pair: ContactPair, pressure: FloatArray) -> FloatArray:
         """Return the pressures of a pair over arc and height, MPa, shape (arc, heights), of all pressures."""
         return pressure[pair.unknowns].reshape(-1, pair.heights)
@@ -104,10 +100,9 @@ class SolidModel(PlacedContacts):
         grid = self.grids[pair.kind]
         return self.pressures_of(pair, pressure)[:, 0 if grid.even else grid.size // 2]
 
-    def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
-        """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
-        along = self.grids[pair.kind].moments(np.ones_like)
-        return np.asarray(integral.force @ (self.pressures_of(pair, pressure) @ along))
+    def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return force (x, y, N) and moment about the origin (N·mm) on the round side by its pressures, MPa, shape (3, m)."""
+        return np.kron(integral.force, self.grids[pair.kind].moments(np.ones_like))
 
     def couple_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> complex:
         """Return ∫ z dF of the force on the round side of a pair, N·mm; zero where pressures are even."""
@@ -127,7 +122,9 @@ class SolidModel(PlacedContacts):
     def strain_energy(self, pose: DrivePose, integrals: tuple[PairIntegrals, ...], pressure: FloatArray) -> float:
         """Return ½ pᵀSp of the pressures at a pose, N·mm: of all bodies, and of the springs of shaft pins."""
         problem = self.contact_problem(pose, list(integrals), 0.0)
-        return float(0.5 * pressure @ problem.compliance @ pressure)
+        _, on_shaft = self.forces_on_pins(pose, integrals)
+        of_springs = float(np.sum((on_shaft @ pressure) ** 2)) / self.drive.hole_stiffness
+        return 0.5 * (float(pressure @ problem.compliance @ pressure) + of_springs)
 
     def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
         """Return the condensed contact problem linearised about a pose.
@@ -144,7 +141,6 @@ class SolidModel(PlacedContacts):
         motions = np.zeros((count, straight if self.widths.even else straight + 2 + len(rollers)))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
-        spring = self.drive.hole_stiffness
         of_rollers: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
             own, grid = pair.unknowns, self.grids[pair.kind]
@@ -157,11 +153,7 @@ class SolidModel(PlacedContacts):
                 motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
             if pair.kind == "pin":
                 motions[own, 3] = moment
-            elif pair.kind == "hole":
-                moved = pose.shaft_pin_displacements[pair.index]
-                gap[own] -= fx * moved.real + fy * moved.imag
-                compliance[own, own] += (np.outer(fx, fx) + np.outer(fy, fy)) / spring
-            else:
+            elif pair.kind != "hole":
                 ray = self.roller_rays[pair.index]
                 motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag
                 of_rollers.setdefault(pair.index, []).append((pair, integral))

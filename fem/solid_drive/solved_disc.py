@@ -18,13 +18,13 @@ import numpy as np
 from fem.drive.contact_kinds import CONTACT_KINDS
 from fem.drive.contact_results import ContactResults, deformed_contacts, summarise_contacts
 from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
-from fem.drive.full_solution import moments_on_cranks
 from fem.drive.grading import closed_without_zone, grade_contacts
 from fem.drive.meshes import coarse_edge, disc_refinements, mesh_drive
 from fem.drive.model import DrivePose
-from fem.drive.pose import PoseSolution, solve_pose
+from fem.drive.pin_supports import PinSupports
+from fem.drive.pose import PoseSolution, WheelLoad, solve_poses
 from fem.drive.rigid_bodies import RigidBodies
-from fem.drive.solution import COARSE_SIZE, solve_disc
+from fem.drive.solution import COARSE_SIZE, solve_discs
 from fem.mesh.memory_need import require_memory, solid_memory
 from fem.mesh.triangulation import estimate_unknowns
 from fem.options import SolutionOptions
@@ -213,10 +213,10 @@ def solve_solid_disc(
     guess = expect_contacts(plane, crank_angle, wheel_moment=plane.wheel_moment(torque))
     require_solid_memory(shapes, guess, options, widths)
     say("plane solution")
-    start = solve_disc(
+    (start,) = solve_discs(
         plane,
         crank_angle,
-        plane.wheel_moment(torque),
+        WheelLoad(moment=plane.wheel_moment(torque)),
         SolutionOptions(size=max(COARSE_SIZE, options.size)),
         progress=say,
     )
@@ -243,7 +243,9 @@ def solve_solid_disc(
         lap("mesh")
         model = condense_solids(single, shapes, contacts, meshes, widths, say)
         lap("assembly and factorisation")
-        state = solve_held(model, drive, moment, drive.load.torque if torque is None else torque, pose, say)
+        (state,) = solve_poses(
+            (model,), PinSupports.of_drive(single), WheelLoad.of_drive(drive, torque, moment), (pose,), progress=say
+        )
         lap("contact and pose")
         along = width_results(model, state)
         if not (complaint := _shortcoming(model, state)):
@@ -275,25 +277,6 @@ def require_solid_memory(
         per_node = layers.unknowns_per_node
         unknowns, needed = unknowns + nodes * per_node, needed + solid_memory(nodes, per_node)
     require_memory(unknowns, needed, "the disc as a solid body")
-
-
-def solve_held(
-    model: SolidModel, drive: Drive, moment: float, torque: float, pose: DrivePose, say: Callable[[str], None]
-) -> PoseSolution:
-    """Solve under a moment on the wheel, N·mm, that of an output torque; on a held wheel under what torque and input leave."""
-    active, history = None, list[float]()
-    for _ in range(MAX_MOMENTS):
-        state = solve_pose(model, moment, start=pose, start_active=active, progress=say)
-        if not drive.wheel_is_held:
-            return state
-        balanced = -drive.driving_sign * torque - drive.input_per_crank_moment * float(
-            moments_on_cranks(model, state).sum()
-        )
-        history.append(abs(balanced - moment) / abs(balanced))
-        if history[-1] < MOMENT_TOLERANCE:
-            return state
-        moment, pose, active = balanced, state.pose, state.contact.active
-    raise ConvergenceError(f"the moment on the held wheel did not settle in {MAX_MOMENTS} steps; changes", history)
 
 
 def _margin(rigid: RigidBodies, pose: DrivePose, widths: DriveWidths) -> float:

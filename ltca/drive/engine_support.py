@@ -88,6 +88,8 @@ _TWO_DIMENSIONS = (
 )
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair", "solid disc")
 _FIXED = ("direct", *_RIGID)
+_WITHOUT_BEAMS = tuple(engine for engine in _FIXED if engine not in ("full FE", "FE mesh"))
+_WITHOUT_POSTS = tuple(engine for engine in _RIGID if engine not in ("full FE", "FE mesh"))
 _ONE_BORE = ("paper", "clearance-free", "solid disc")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
@@ -104,7 +106,7 @@ REFUSALS = (
     ),
     Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
-    Refusal("pin_wheel.beam", _FIXED, "pins do not bend in the model"),
+    Refusal("pin_wheel.beam", _WITHOUT_BEAMS, "pins do not bend in the model"),
     Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
     Refusal(f"load.external.{ANY}", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("disc.number_of_discs", ("paper", "solid disc"), "the model has one disc"),
@@ -112,11 +114,11 @@ REFUSALS = (
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
-    Refusal("pin_shaft.beam", _FIXED, "pins do not bend in the model", _spring_of_pins),
+    Refusal("pin_shaft.beam", _WITHOUT_BEAMS, "pins do not bend in the model", _spring_of_pins),
     Refusal("main_bearing", _RIGID, "the axis of the wheel is fixed in the model"),
     Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
-    Refusal("carrier.flange", _RIGID, "the carrier is rigid in the model"),
-    Refusal("carrier.posts", _RIGID, "the carrier is rigid in the model"),
+    Refusal("carrier.flange", _WITHOUT_POSTS, "the carrier is rigid in the model"),
+    Refusal("carrier.posts", _WITHOUT_POSTS, "the carrier is rigid in the model"),
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),
