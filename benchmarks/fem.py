@@ -201,6 +201,8 @@ def halve_pressures(solution: FullSolution, first: int) -> float:
     import numpy as np
 
     from fem.contact.unilateral import ContactProblem, solve_floating_contact
+    from fem.drive.pose import joint_problem
+    from fem.drive.supports import Supports
 
     model = solution.model
     columns = []
@@ -213,7 +215,8 @@ def halve_pressures(solution: FullSolution, first: int) -> float:
             columns.append(column)
     basis = np.array(columns).T
     integrals = [model.integrate(pair, solution.pose) for pair in model.pairs]
-    whole = model.contact_problem(solution.pose, integrals, solution.state.wheel_moment)
+    supports = Supports.of_drive(model.drive)
+    whole = joint_problem([model], supports, [solution.pose], [integrals], solution.state.wheel_moment)
     part = ContactProblem(
         compliance=basis.T @ whole.compliance @ basis,
         gap=basis.T @ whole.gap,

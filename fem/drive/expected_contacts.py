@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem.drive.pin_supports import mean_spring
 from fem.drive.rigid_bodies import DISC_ROTATION, WHEEL_ANGLE, RigidBodies, X, Y
+from fem.drive.supports import mean_spring
 from ltca.arrays import BoolArray, ComplexArray, FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.hole_contact import hole_modulus, shaft_pins_yield

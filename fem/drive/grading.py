@@ -134,7 +134,7 @@ def closed_without_zone(model: PlacedContacts, solution: PoseSolution) -> str:
     pose, place = solution.pose, model.placement
     flank_profile = model.shapes.disc.flank.profile
     rigid = RigidBodies(profile=flank_profile, placement=place, crank_angle=model.crank_angle)
-    rigid = rigid.with_pins_moved(pose.wheel_pin_displacements)
+    rigid = rigid.moved(*pose.displacements)
     gaps = rigid.gaps(pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
     elastic = model.disc_displacement(solution.contact.pressure)
     moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)

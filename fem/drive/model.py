@@ -45,6 +45,8 @@ class DrivePose:
         Displacement of each shaft pin on its spring, mm.
     wheel_pin_displacements : array of complex, shape (z_P,)
         Displacement of the seat of each wheel pin in the turning wheel, mm; zero in a rigid ring.
+    crank_displacements : array of complex, shape (cranks,)
+        Displacement of each crank at the disc, mm; zero of rigid ones.
     """
 
     disc_x: float
@@ -54,11 +56,17 @@ class DrivePose:
     roller_distances: FloatArray
     shaft_pin_displacements: ComplexArray
     wheel_pin_displacements: ComplexArray
+    crank_displacements: ComplexArray
 
     @property
     def disc_displacement(self) -> complex:
         """Displacement of the disc centre, mm."""
         return complex(self.disc_x, self.disc_y)
+
+    @property
+    def displacements(self) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Displacements of wheel pins, shaft pins and cranks."""
+        return self.wheel_pin_displacements, self.shaft_pin_displacements, self.crank_displacements
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -215,19 +223,26 @@ class PlacedContacts(ABC):
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
         return np.asarray(self.resultants_of(pair, integral) @ pressure[pair.unknowns])
 
-    def forces_on_pins(self, pose: DrivePose, integrals: Sequence[PairIntegrals]) -> tuple[FloatArray, FloatArray]:
-        """Return x, y of the forces on wheel pins, in the wheel, and on shaft pins by all pressures, N/MPa, shape (2 pins, m)."""
-        on_wheel = np.zeros((2 * len(self.placement.wheel_pin_radii), self.unknown_count))
-        on_shaft = np.zeros((2 * len(self.placement.hole_radii), self.unknown_count))
+    def forces_on_supports(
+        self, pose: DrivePose, integrals: Sequence[PairIntegrals]
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return x, y of the forces on wheel pins, in the wheel, shaft pins and cranks by all pressures, N/MPa, (2 parts, m)."""
+        place = self.placement
+        counts = len(place.wheel_pin_radii), len(place.hole_radii), place.cranks
+        on_wheel, on_shaft, on_cranks = (np.zeros((2 * count, self.unknown_count)) for count in counts)
         in_wheel = self.wheel_direction(pose).conjugate()
         for pair, integral in zip(self.pairs, integrals, strict=True):
-            if pair.kind not in ("pin", "hole"):
-                continue
             fx, fy, _ = self.resultants_of(pair, integral)
             along = (fx + 1j * fy) * (in_wheel if pair.kind == "pin" else 1.0)
-            rows = on_wheel if pair.kind == "pin" else on_shaft
-            rows[2 * pair.index, pair.unknowns], rows[2 * pair.index + 1, pair.unknowns] = along.real, along.imag
-        return on_wheel, on_shaft
+            if pair.kind == "roller_inner":  # the crank carries roller and race with it
+                continue
+            rows, index = {
+                "pin": (on_wheel, pair.index),
+                "hole": (on_shaft, pair.index),
+                "roller_outer": (on_cranks, self.crank_of(pair.index) if pair.kind == "roller_outer" else 0),
+            }[pair.kind]
+            rows[2 * index, pair.unknowns], rows[2 * index + 1, pair.unknowns] = along.real, along.imag
+        return on_wheel, on_shaft, on_cranks
 
     @property
     def unknown_count(self) -> int:
@@ -270,7 +285,8 @@ class PlacedContacts(ABC):
             return complex(centre * self.wheel_direction(pose))
         if kind == "hole":
             return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
-        race = complex(self.race_centres[self.crank_of(index)])
+        crank = self.crank_of(index)
+        race = complex(self.race_centres[crank] + pose.crank_displacements[crank])
         return race + complex(pose.roller_distances[index] * self.roller_rays[index])
 
     def wheel_direction(self, pose: DrivePose) -> complex:
@@ -280,7 +296,8 @@ class PlacedContacts(ABC):
     def carrier_pose(self, pair: ContactPair, pose: DrivePose) -> Pose:
         """Return the frame of the body that carries the pressure of a pair."""
         if pair.kind == "roller_inner":
-            return Pose(centre=complex(self.race_centres[self.crank_of(pair.index)]))
+            crank = self.crank_of(pair.index)
+            return Pose(centre=complex(self.race_centres[crank] + pose.crank_displacements[crank]))
         return self.disc_pose(pose)
 
     def integrate(self, pair: ContactPair, pose: DrivePose) -> PairIntegrals:
@@ -312,6 +329,7 @@ class PlacedContacts(ABC):
             roller_distances=0.5 * (outer + inner),
             shaft_pin_displacements=np.zeros(len(place.hole_radii), dtype=complex),
             wheel_pin_displacements=np.zeros(len(place.wheel_pin_radii), dtype=complex),
+            crank_displacements=np.zeros(place.cranks, dtype=complex),
         )
 
     def start_active(self) -> NDArray[np.bool_]:

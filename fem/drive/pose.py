@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from fem.contact.coupling import PairIntegrals
 from fem.contact.unilateral import ContactProblem, ContactSolution, solve_floating_contact
 from fem.drive.model import DrivePose, PlacedContacts
-from fem.drive.pin_supports import PinSupports
+from fem.drive.supports import Supports
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive
 from ltca.errors import ConvergenceError
@@ -126,7 +126,7 @@ def moments_on_cranks(model: PlacedContacts, forces: FloatArray) -> FloatArray:
 
 def joint_problem(
     models: Sequence[PlacedContacts],
-    supports: PinSupports,
+    supports: Supports,
     poses: Sequence[DrivePose],
     integrals: Sequence[list[PairIntegrals]],
     wheel_moment: float,
@@ -148,18 +148,20 @@ def joint_problem(
             compliance[own, own] = problem.compliance
             motions[own, columns] = problem.motions
             external[columns] = problem.external
-    on_pins = [model.forces_on_pins(pose, each) for model, pose, each in zip(models, poses, integrals, strict=True)]
-    for flexibility, each, moved in (
-        (supports.wheel, [one for one, _ in on_pins], [pose.wheel_pin_displacements for pose in poses]),
-        (supports.shaft, [other for _, other in on_pins], [pose.shaft_pin_displacements for pose in poses]),
+    forces = [model.forces_on_supports(pose, each) for model, pose, each in zip(models, poses, integrals, strict=True)]
+    on_wheel, on_shaft, on_cranks = (sla.block_diag(*each) for each in zip(*forces, strict=True))
+    at_shaft = [pose.shaft_pin_displacements for pose in poses] + [pose.crank_displacements for pose in poses]
+    for flexibility, force, moved in (
+        (supports.wheel, on_wheel, [pose.wheel_pin_displacements for pose in poses]),
+        (supports.shaft, np.vstack((on_shaft, on_cranks)), at_shaft),
     ):
         if flexibility is None:
             continue
-        force = each[0] if len(each) == 1 else sla.block_diag(*each)
         here = np.concatenate(moved)
-        gap = gap - force.T @ np.stack([here.real, here.imag], axis=-1).ravel()
-        # Few contacts press pins: the others have no part in this.
-        pressed = np.flatnonzero(np.any(force != 0.0, axis=0))
+        gap = gap - force.T @ np.column_stack([here.real, here.imag]).ravel()
+        # Some contacts press nothing that yields.
+        yields = np.any(flexibility != 0.0, axis=0)
+        pressed = np.flatnonzero(np.any(force[yields] != 0.0, axis=0))
         along = force[:, pressed]
         compliance[np.ix_(pressed, pressed)] += along.T @ flexibility @ along
     return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)
@@ -188,14 +190,14 @@ def solve_pose(
     model: PlacedContacts, wheel_moment: float, *, start: DrivePose | None = None, **options: Any
 ) -> PoseSolution:
     """Solve contact and pose of one disc under a moment on the wheel, N·mm; further arguments as for `solve_poses`."""
-    supports, load = PinSupports.of_drive(model.drive), WheelLoad(moment=wheel_moment)
+    supports, load = Supports.of_drive(model.drive), WheelLoad(moment=wheel_moment)
     (found,) = solve_poses((model,), supports, load, None if start is None else (start,), **options)
     return found
 
 
 def solve_poses(
     models: Sequence[PlacedContacts],
-    supports: PinSupports,
+    supports: Supports,
     load: WheelLoad,
     starts: Sequence[DrivePose] | None = None,
     *,
@@ -210,7 +212,7 @@ def solve_poses(
     ----------
     models : sequence of PlacedContacts
         Condensed discs with their pins and rollers.
-    supports : PinSupports
+    supports : Supports
         What holds the pins.
     load : WheelLoad
         Moment on the wheel, or what a held wheel balances.
@@ -267,9 +269,9 @@ def solve_poses(
                 f"{contact.iterations} active-set steps"
             )
         if increment < pose_tolerance and changes[-1] < LOAD_TOLERANCE and off <= MOMENT_TOLERANCE * abs(moment):
-            carried = [_wheel_moment(model, each) for model, each in zip(models, forces, strict=True)]
-            if len(models) == 1:
-                carried = [moment]
+            carried = [moment]
+            if len(models) > 1:
+                carried = [_wheel_moment(model, each) for model, each in zip(models, forces, strict=True)]
             return tuple(
                 PoseSolution(
                     pose=pose,
@@ -326,7 +328,7 @@ def _by_disc(models: Sequence[PlacedContacts], found: ContactSolution) -> list[C
 
 def _move(
     models: Sequence[PlacedContacts],
-    supports: PinSupports,
+    supports: Supports,
     poses: Sequence[DrivePose],
     contacts: Sequence[ContactSolution],
     forces: Sequence[FloatArray],
@@ -342,11 +344,16 @@ def _move(
         largest = max(largest, float(np.max(np.abs(motion * reach))))
         motions.append(motion)
     part = min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
-    on_wheel, on_shaft = forces_on_pins(models, poses, forces)
-    seats, pins = supports.moved(on_wheel, on_shaft)
     increment, found = largest, []
-    for model, pose, motion, seat, pin in zip(models, poses, motions, seats, pins, strict=True):
-        change = np.concatenate([pin - pose.shaft_pin_displacements, seat - pose.wheel_pin_displacements])
+    moved = supports.moved(*forces_on_supports(models, poses, forces))
+    for model, pose, motion, seats, pins, cranks in zip(models, poses, motions, *moved, strict=True):
+        change = np.concatenate(
+            [
+                pins - pose.shaft_pin_displacements,
+                seats - pose.wheel_pin_displacements,
+                cranks - pose.crank_displacements,
+            ]
+        )
         increment = max(increment, float(np.max(np.abs(change), initial=0.0)))
         distances = pose.roller_distances.copy()
         distances[list(model.rollers)] += part * motion[4:]
@@ -357,24 +364,30 @@ def _move(
                 disc_rotation=pose.disc_rotation + part * float(motion[2]),
                 wheel_angle=pose.wheel_angle + part * float(motion[WHEEL]),
                 roller_distances=distances,
-                shaft_pin_displacements=pin,
-                wheel_pin_displacements=seat,
+                shaft_pin_displacements=pins,
+                wheel_pin_displacements=seats,
+                crank_displacements=cranks,
             )
         )
     return found, increment
 
 
-def forces_on_pins(
+def forces_on_supports(
     models: Sequence[PlacedContacts], poses: Sequence[DrivePose], forces: Sequence[FloatArray]
-) -> tuple[ComplexArray, ComplexArray]:
-    """Return the forces on wheel pins, in the wheel, and on shaft pins by `pair_forces` of all discs, N, shapes (discs, pins)."""
-    on_wheel = np.zeros((len(models), len(poses[0].wheel_pin_displacements)), dtype=complex)
-    on_shaft = np.zeros((len(models), len(poses[0].shaft_pin_displacements)), dtype=complex)
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return the forces on wheel pins, in the wheel, shaft pins and cranks by `pair_forces` of all discs, N, (discs, parts)."""
+    first = poses[0]
+    on_wheel, on_shaft, on_cranks = (
+        np.zeros((len(models), each.size), dtype=complex)
+        for each in (first.wheel_pin_displacements, first.shaft_pin_displacements, first.crank_displacements)
+    )
     for disc, (model, pose, acting) in enumerate(zip(models, poses, forces, strict=True)):
         in_wheel = model.wheel_direction(pose).conjugate()
-        for pair, force in zip(model.pairs, acting, strict=True):
+        for pair, (x, y, _) in zip(model.pairs, acting.tolist(), strict=True):
             if pair.kind == "hole":
-                on_shaft[disc, pair.index] = complex(force[0], force[1])
+                on_shaft[disc, pair.index] = complex(x, y)
             elif pair.kind == "pin":
-                on_wheel[disc, pair.index] = complex(force[0], force[1]) * in_wheel
-    return on_wheel, on_shaft
+                on_wheel[disc, pair.index] = complex(x, y) * in_wheel
+            elif pair.kind == "roller_outer":
+                on_cranks[disc, model.crank_of(pair.index)] += complex(x, y)
+    return on_wheel, on_shaft, on_cranks

@@ -57,11 +57,14 @@ class RigidBodies:
         Nominal places of the parts.
     crank_angle : float
         φ_C, rad.
+    cranks_moved : array of complex, shape (cranks,), or None
+        Displacement of each crank, mm; None of rigid ones.
     """
 
     profile: FlankProfile
     placement: Placement
     crank_angle: float
+    cranks_moved: ComplexArray | None = None
 
     @classmethod
     def of_drive(cls, drive: Drive, crank_angle: float) -> RigidBodies:
@@ -70,10 +73,14 @@ class RigidBodies:
             profile=FlankProfile.of_drive(drive), placement=Placement.of_drive(drive), crank_angle=float(crank_angle)
         )
 
-    def with_pins_moved(self, displacements: ComplexArray) -> RigidBodies:
-        """Return the bodies with wheel pins displaced in the wheel, mm, shape (z_P,)."""
-        place = self.placement
-        return replace(self, placement=replace(place, wheel_pin_centres=place.wheel_pin_centres + displacements))
+    def moved(self, wheel_pins: ComplexArray, shaft_pins: ComplexArray, cranks: ComplexArray) -> RigidBodies:
+        """Return the bodies with wheel pins displaced in the wheel, shaft pins and cranks displaced, mm."""
+        place = replace(
+            self.placement,
+            wheel_pin_centres=self.placement.wheel_pin_centres + wheel_pins,
+            shaft_pin_centres=self.placement.shaft_pin_centres + shaft_pins,
+        )
+        return replace(self, placement=place, cranks_moved=cranks)
 
     def gaps(self, displacement: complex, rotation: float, wheel_angle: float) -> RigidGaps:
         """Return all gaps at a pose, exact, from flank and circles.
@@ -88,7 +95,8 @@ class RigidBodies:
         start = np.angle(place.wheel_pin_centres) + wheel - rotation
         theta = profile.nearest_point(pins, _on_turned_flank(profile, start)).parameter
         rays = self.roller_rays()
-        bores = bore_displacements(place, self.crank_angle, displacement, rotation)[place.roller_cranks]
+        bores = bore_displacements(place, self.crank_angle, displacement, rotation)
+        bores = (bores if self.cranks_moved is None else bores - self.cranks_moved)[place.roller_cranks]
         inward, across = (bores * rays.conjugate()).real, (bores * rays.conjugate()).imag
         # Distance of the rollers' centres along their cage rays where they touch the bore.
         reach = inward + np.sqrt((place.bore_radius - place.roller_radii) ** 2 - across**2)

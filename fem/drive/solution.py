@@ -26,9 +26,9 @@ from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
 from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
 from fem.drive.model import DriveModel, RoundGroup
-from fem.drive.pin_supports import PinSupports
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, WheelLoad, solve_poses
 from fem.drive.rigid_bodies import RigidBodies
+from fem.drive.supports import Supports
 from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
@@ -108,7 +108,7 @@ class _Disc:
         loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
         # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
         margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
-        rigid = self.rigid.with_pins_moved(pose.wheel_pin_displacements)
+        rigid = self.rigid.moved(*pose.displacements)
         return self.grade(rigid, place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
 
 
@@ -117,7 +117,7 @@ class _Task:
     """What stays the same through all stages of one solution."""
 
     discs: tuple[_Disc, ...]
-    supports: PinSupports
+    supports: Supports
     load: WheelLoad
     options: SolutionOptions
     pose_tolerance: float
@@ -315,7 +315,7 @@ def solve_discs(
     require_model_memory([(disc.shapes, disc.guess) for disc in discs], options)
     task = _Task(
         discs=discs,
-        supports=PinSupports.of_drive(drive),
+        supports=Supports.of_drive(drive),
         load=load,
         options=options,
         pose_tolerance=pose_tolerance,
@@ -392,7 +392,7 @@ def solve_again(
     models = [each.model for each in previous]
     found = solve_poses(
         models,
-        PinSupports.of_drive(drive, options.halvings),
+        Supports.of_drive(drive, options.halvings),
         load,
         [each.pose for each in previous],
         start_active=np.concatenate([each.state.contact.active for each in previous]),
@@ -456,7 +456,7 @@ def refine_discs(
         watch.lap("assembly and factorisation")
     found = solve_poses(
         models,
-        PinSupports.of_drive(drive, options.halvings),
+        Supports.of_drive(drive, options.halvings),
         load,
         [own.pose for own in coarse],
         pose_tolerance=pose_tolerance,

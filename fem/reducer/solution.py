@@ -17,9 +17,9 @@ from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
-from fem.drive.pin_supports import ring_of_seats
-from fem.drive.pose import POSE_TOLERANCE as ROUGH_POSE, WheelLoad, forces_on_pins
+from fem.drive.pose import POSE_TOLERANCE as ROUGH_POSE, WheelLoad, forces_on_supports
 from fem.drive.solution import refine_discs, require_zones, solve_again, solve_discs
+from fem.drive.supports import ring_of_seats
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
@@ -56,6 +56,12 @@ class ReducerSolution:
     discs: tuple[FullSolution, ...]
     seconds: dict[str, float]
 
+    @classmethod
+    def of_discs(cls, drive: Drive, torque: float, discs: tuple[FullSolution, ...]) -> ReducerSolution:
+        """Return the solution of a drive at an output torque, N·mm, solved together."""
+        first = discs[0]
+        return cls(drive=drive, crank_angle=first.model.crank_angle, torque=torque, discs=discs, seconds=first.seconds)
+
     @property
     def wheel_angle(self) -> float:
         """Deviation of the wheel from φ_C/u, rad."""
@@ -86,7 +92,7 @@ class ReducerSolution:
         """Displacement of the seats of the wheel pins by the ring, radial + i tangential, mm, shape (z_P,); None if rigid."""
         if self.drive.ring is None:
             return None
-        on_wheel, _ = forces_on_pins(
+        on_wheel, _, _ = forces_on_supports(
             [disc.model for disc in self.discs],
             [disc.pose for disc in self.discs],
             [disc.pair_forces for disc in self.discs],
@@ -121,16 +127,6 @@ class ReducerSolution:
     def unknowns(self) -> int:
         """Displacement and pressure unknowns of all discs."""
         return sum(disc.unknowns for disc in self.discs)
-
-
-def _of_discs(drive: Drive, torque: float, discs: tuple[FullSolution, ...]) -> ReducerSolution:
-    return ReducerSolution(
-        drive=drive,
-        crank_angle=discs[0].model.crank_angle,
-        torque=torque,
-        discs=discs,
-        seconds=discs[0].seconds,
-    )
 
 
 @names_unit_mistakes
@@ -198,7 +194,7 @@ def solve_reducer(
         pose_tolerance=ROUGH_POSE if alone else POSE_TOLERANCE,
         progress=progress,
     )
-    return _of_discs(drive, drive.load.torque if torque is None else torque, found)
+    return ReducerSolution.of_discs(drive, drive.load.torque if torque is None else torque, found)
 
 
 def settle_pose(solution: ReducerSolution, progress: Callable[[str], None] | None = None) -> ReducerSolution:
@@ -249,7 +245,9 @@ def solve_refined(
         When the refined meshes of a disc would not fit into memory.
     """
     load = WheelLoad.of_drive(drive, torque, sum(own.wheel_moment for own in coarse))
-    return _of_discs(drive, torque, refine_discs(drive, load, coarse, pose_tolerance=POSE_TOLERANCE, progress=progress))
+    return ReducerSolution.of_discs(
+        drive, torque, refine_discs(drive, load, coarse, pose_tolerance=POSE_TOLERANCE, progress=progress)
+    )
 
 
 def require_solution_memory(drive: Drive, crank_angle: float, options: SolutionOptions) -> None:

@@ -122,7 +122,7 @@ class SolidModel(PlacedContacts):
     def strain_energy(self, pose: DrivePose, integrals: tuple[PairIntegrals, ...], pressure: FloatArray) -> float:
         """Return ½ pᵀSp of the pressures at a pose, N·mm: of all bodies, and of the springs of shaft pins."""
         problem = self.contact_problem(pose, list(integrals), 0.0)
-        _, on_shaft = self.forces_on_pins(pose, integrals)
+        _, on_shaft, _ = self.forces_on_supports(pose, integrals)
         of_springs = float(np.sum((on_shaft @ pressure) ** 2)) / self.drive.hole_stiffness
         return 0.5 * (float(pressure @ problem.compliance @ pressure) + of_springs)
 

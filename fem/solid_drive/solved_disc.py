@@ -21,10 +21,10 @@ from fem.drive.expected_contacts import ExpectedContacts, expect_contacts
 from fem.drive.grading import closed_without_zone, grade_contacts
 from fem.drive.meshes import coarse_edge, disc_refinements, mesh_drive
 from fem.drive.model import DrivePose
-from fem.drive.pin_supports import PinSupports
 from fem.drive.pose import PoseSolution, WheelLoad, solve_poses
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import COARSE_SIZE, solve_discs
+from fem.drive.supports import Supports
 from fem.mesh.memory_need import require_memory, solid_memory
 from fem.mesh.triangulation import estimate_unknowns
 from fem.options import SolutionOptions
@@ -244,7 +244,7 @@ def solve_solid_disc(
         model = condense_solids(single, shapes, contacts, meshes, widths, say)
         lap("assembly and factorisation")
         (state,) = solve_poses(
-            (model,), PinSupports.of_drive(single), WheelLoad.of_drive(drive, torque, moment), (pose,), progress=say
+            (model,), Supports.of_drive(single), WheelLoad.of_drive(drive, torque, moment), (pose,), progress=say
         )
         lap("contact and pose")
         along = width_results(model, state)

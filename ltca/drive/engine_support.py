@@ -89,7 +89,7 @@ _TWO_DIMENSIONS = (
 _RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair", "solid disc")
 _FIXED = ("direct", *_RIGID)
 _WITHOUT_BEAMS = tuple(engine for engine in _FIXED if engine not in ("full FE", "FE mesh"))
-_WITHOUT_POSTS = tuple(engine for engine in _RIGID if engine not in ("full FE", "FE mesh"))
+_WITHOUT_SUPPORTS = tuple(engine for engine in _RIGID if engine not in ("full FE", "FE mesh"))
 _ONE_BORE = ("paper", "clearance-free", "solid disc")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
@@ -97,14 +97,22 @@ REFUSALS = (
     Refusal("crank.number", _ONE_BORE, "the model has one crank"),
     Refusal("crank.circle_radius", _ONE_BORE, "the model has one crank"),
     Refusal("crank.angle", _ONE_BORE, "the model has one crank"),
-    Refusal("crank.support", _RIGID, "cranks are rigid in the model"),
+    Refusal("crank.support", _WITHOUT_SUPPORTS, "cranks are rigid in the model"),
+    *(
+        Refusal(f"crank.support.{name}", ("full FE",), reason)
+        for name, reason in (
+            ("clearance", "bearings of cranks are linear springs in the model"),
+            ("preload", "bearings of cranks are linear springs in the model"),
+            ("torsion", "cranks do not twist in the model"),
+        )
+    ),
     Refusal("pin_wheel.pin_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal(
         "pin_wheel.axis_offset",
         ("full FE", "FE mesh", "solid pair", "solid disc"),
         "wheel and pin shaft have the same axis in the model",
     ),
-    Refusal("pin_wheel.support_stiffness", _RIGID, "the axis of the wheel is fixed in the model"),
+    Refusal("pin_wheel.support_stiffness", _WITHOUT_SUPPORTS, "the axis of the wheel is fixed in the model"),
     Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_wheel.beam", _WITHOUT_BEAMS, "pins do not bend in the model"),
     Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
@@ -115,10 +123,14 @@ REFUSALS = (
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
     Refusal("pin_shaft.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_shaft.beam", _WITHOUT_BEAMS, "pins do not bend in the model", _spring_of_pins),
-    Refusal("main_bearing", _RIGID, "the axis of the wheel is fixed in the model"),
+    Refusal("main_bearing", _WITHOUT_SUPPORTS, "the axis of the wheel is fixed in the model"),
+    *(
+        Refusal(f"main_bearing.{name}", ("full FE",), "the main bearing is a linear spring in the model")
+        for name in ("clearance", "preload", f"bearings.{ANY}")
+    ),
     Refusal("carrier.stiffness_torsion", _RIGID, "the carrier is rigid in the model"),
-    Refusal("carrier.flange", _WITHOUT_POSTS, "the carrier is rigid in the model"),
-    Refusal("carrier.posts", _WITHOUT_POSTS, "the carrier is rigid in the model"),
+    Refusal("carrier.flange", _WITHOUT_SUPPORTS, "the carrier is rigid in the model"),
+    Refusal("carrier.posts", _WITHOUT_SUPPORTS, "the carrier is rigid in the model"),
     Refusal("installation.first_stage_ratio", _ONE_BORE, "the model has one crank"),
     Refusal("ring", _ONE_BORE, "the wheel pins stand in a rigid ring in the model"),
     Refusal("friction", _FIXED, "the model is frictionless"),

@@ -9,8 +9,9 @@ from fem.drive.contact_results import DeformedContacts
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.grading import grade_contacts
 from fem.drive.meshes import wall_refinements
+from fem.drive.pose import WheelLoad
 from fem.drive.rigid_bodies import RigidBodies
-from fem.drive.solution import solve_disc
+from fem.drive.solution import solve_discs
 from fem.options import SolutionOptions
 from fem.shapes import DriveShapes
 from ltca.drive.single_discs import single_discs
@@ -130,7 +131,8 @@ def test_a_plastic_disc_is_answered():
     """Failed after five gradings, the pressure at the end of a zone that lay where the undeformed flank is."""
     drive, angle = practical_drive(5)
     drive = replace(drive, ring=None)  # which full finite elements do not have
-    found = solve_disc(single_discs(drive)[0], angle, drive.wheel_moment() / 2.0, SolutionOptions(size=4.0))
+    load = WheelLoad(moment=drive.wheel_moment() / 2.0)
+    (found,) = solve_discs(single_discs(drive)[0], angle, load, SolutionOptions(size=4.0))
     assert drive.materials.disc.youngs_modulus == 2600.0
     # The pose is iterated until loads change by a tenth of a newton; the wheel carries 2,700 N at the pin circle.
     assert found.contacts.equilibrium_residual < 1e-4 * found.contacts.pin_load.sum()

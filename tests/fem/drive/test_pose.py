@@ -10,6 +10,7 @@ import pytest
 import fem.drive.pose as pose
 from fem.contact.unilateral import ContactSolution
 from fem.drive.model import DrivePose
+from fem.drive.supports import Supports
 from ltca.errors import ConvergenceError
 
 CONTACT = ContactSolution(
@@ -22,7 +23,7 @@ def plain_pose(rollers=2, pins=1):
     return DrivePose(
         disc_x=0.0, disc_y=0.0, disc_rotation=0.0, wheel_angle=0.0,
         roller_distances=np.full(rollers, 24.5), shaft_pin_displacements=np.zeros(pins, dtype=complex),
-        wheel_pin_displacements=np.zeros(2, dtype=complex),
+        wheel_pin_displacements=np.zeros(2, dtype=complex), crank_displacements=np.zeros(1, dtype=complex),
     )  # fmt: skip
 
 
@@ -39,13 +40,16 @@ def stepping(monkeypatch):
             return np.column_stack([0.6 * np.asarray(load), 0.8 * np.asarray(load), np.zeros(len(load))])
 
         model = SimpleNamespace(
-            pairs=("first", "second"), crank_angle=0.5, integrate=lambda pair, at: pair,
-            contact_problem=lambda at, integrals, moment: None,
-        )  # fmt: skip
+            pairs=("first", "second"), unknown_count=3, crank_angle=0.5, integrate=lambda pair, at: pair
+        )
+        monkeypatch.setattr(pose, "joint_problem", lambda *given: None)
         monkeypatch.setattr(pose, "solve_floating_contact", lambda problem, active: CONTACT)
         monkeypatch.setattr(pose, "pair_forces", forces)
-        monkeypatch.setattr(pose, "_move", lambda model, at, contact, forces: (at, now["increment"]))
-        return pose.solve_pose(model, -1.0, start=plain_pose(), start_active=CONTACT.active, **options)
+        monkeypatch.setattr(pose, "moments_on_cranks", lambda *given: np.zeros(1))
+        monkeypatch.setattr(pose, "_move", lambda models, supports, at, contacts, forces: (at, now["increment"]))
+        load, supports = pose.WheelLoad(moment=-1.0), Supports(wheel=None, shaft=np.eye(4))
+        (found,) = pose.solve_poses((model,), supports, load, (plain_pose(),), start_active=CONTACT.active, **options)
+        return found
 
     return run
 
@@ -75,13 +79,13 @@ def move(motion, start=None, force=(0.0, 0.0, 0.0), ring=0.0):
         placement=SimpleNamespace(wheel_pin_centres=np.array([80.0, -80.0j])),
         rollers=(1, 0),
         pairs=(SimpleNamespace(kind="hole", index=0), SimpleNamespace(kind="pin", index=0)),
-        drive=SimpleNamespace(hole_stiffness=1e6),
-        by_others=np.zeros(2, dtype=complex),
         wheel_direction=lambda at: 1j,
-        seats_moved_by=lambda force: ring * force,
     )
     found = SimpleNamespace(motion=np.asarray(motion))
-    return pose._move(model, plain_pose() if start is None else start, found, np.array([force, (9.0, 9.0, 9.0)]))
+    supports = Supports(wheel=ring * np.eye(4), shaft=1e-6 * np.diag([1.0, 1.0, 0.0, 0.0]))
+    poses, forces = [plain_pose() if start is None else start], [np.array([force, (9.0, 9.0, 9.0)])]
+    (at,), increment = pose._move([model], supports, poses, [found], forces)
+    return at, increment
 
 
 def test_bodies_move_by_the_multipliers():

@@ -91,7 +91,7 @@ def test_the_pose_is_at_rest(coarse):
 
 
 def test_arrays_have_full_length(coarse):
-    summary = summarise(ReducerSolution.of_disc(coarse))
+    summary = summarise(ReducerSolution.of_discs(coarse.model.drive, coarse.model.drive.load.torque, (coarse,)))
     for name, count in (("pin_load_N", 14), ("roller_load_outer_N", 11), ("pin_shaft_load_N", 8)):
         assert np.shape(summary[name]) == (1, count)  # by disc, then by part
     contacts = coarse.contacts

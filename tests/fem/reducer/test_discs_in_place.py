@@ -12,7 +12,6 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.solution import solve_drive
-from fem.reducer.solution import expect_shares
 from ltca.drive.deviations import OneDisc, Runout
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.pairs import ContactGeometry
@@ -42,20 +41,6 @@ def test_gaps_are_those_of_the_pairs(three, disc):
     rays = geometry.rollers(angle)
     reach = rays.touching(rays.direction.conjugate() * np.array([complex(x, y)]))
     np.testing.assert_allclose(gaps.rollers, (reach - rays.outermost)[0], rtol=0.0, atol=1e-12)
-
-
-def test_springs_share_the_moment(three):
-    """Their angles agree, all moments make the wheel's, and the disc that lies nearer by its runout carries otherwise."""
-    total = three.wheel_moment()
-    moment, slope = expect_shares(three, 1.3, total)
-    assert moment.sum() == pytest.approx(total, rel=1e-9)
-    angles = [
-        expect_contacts(single, 1.3, wheel_moment=float(own)).wheel_angle
-        for single, own in zip(single_discs(three), moment, strict=True)
-    ]
-    assert np.ptp(angles) < 1e-7
-    assert np.all(slope > 0.0)
-    assert np.ptp(moment) > 0.05 * abs(total)
 
 
 def test_one_solution_is_of_one_disc(three):

@@ -9,7 +9,6 @@ import pytest
 
 from fem.body.pin_ring import seat_flexibility
 from fem.options import SolutionOptions
-from fem.reducer.mixing import AndersonMixing
 from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
 from ltca.analysis.engines import PlaneStrain
@@ -78,12 +77,12 @@ def test_one_disc_on_an_elastic_ring():
 @pytest.mark.slow
 @pytest.mark.nightly
 def test_two_discs_share_the_ring():
-    """Each disc finds the seats where the forces of the other hold them: as for one disc."""
+    """The forces of both hold the seats: as for one disc."""
     full, own, load, turned = compared(joint(2), 4.0)
     assert load < 0.01
     assert turned < 0.5
     first, second = (disc.pose.wheel_pin_displacements for disc in full.discs)
-    np.testing.assert_allclose(first, second, atol=3e-7)  # the last change of a round, 1e-7
+    np.testing.assert_allclose(first, second, rtol=1e-12)
     np.testing.assert_allclose(full.ring_displacements, own.ring_displacements[0], atol=2e-4)
 
 
@@ -104,20 +103,6 @@ def test_the_ring_of_the_analysis_is_that_of_the_full_solution(more):
     np.testing.assert_allclose(
         own.reshape(other.shape), other, atol=1e-4 * np.max(other)
     )  # equal seats on a mesh: 6e-5
-
-
-def test_mixing_ends_where_the_iteration_alone_hardly_does():
-    """x = A x + b with eigenvalues up to 0.95 in five directions: after six rounds it is exact."""
-    rng = np.random.default_rng(3)
-    basis, _ = np.linalg.qr(rng.normal(size=(12, 12)))
-    matrix = basis[:, :5] @ np.diag([0.95, 0.8, 0.5, -0.3, 0.1]) @ basis[:, :5].T
-    constant = rng.normal(size=12)
-    exact = np.linalg.solve(np.eye(12) - matrix, constant)
-    mixing, given = AndersonMixing(depth=5), np.zeros(6, dtype=complex)
-    for _ in range(8):
-        found = (matrix @ given.view(float) + constant).view(complex)
-        given = mixing.next(given, found)
-    np.testing.assert_allclose(given.view(float), exact, rtol=1e-6)  # the conditioning of the last differences
 
 
 def test_calculix_is_refused_with_a_ring(tmp_path, capsys):

@@ -14,8 +14,9 @@ from fem.coefficients.dataset import derive_coefficients
 from fem.commands import fem as command
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.fields import recover_fields
+from fem.drive.pose import WheelLoad
 from fem.drive.rigid_bodies import RigidBodies
-from fem.drive.solution import solve_disc
+from fem.drive.solution import solve_discs
 from fem.options import SolutionOptions
 from fem.pictures.mesh_picture import choose_zooms, place_bodies
 from fem.reducer.solution import solve_reducer
@@ -169,7 +170,8 @@ def test_a_held_wheel_takes_the_moment_of_the_sun(solved, small):
 
 @pytest.mark.slow
 def test_numbering_of_the_cranks_is_a_matter_of_names(solved, small):
-    one, other = solved.discs[0], solve_disc(renumbered(small), ANGLE, solved.wheel_moment, SolutionOptions(size=6.0))
+    load = WheelLoad(moment=solved.wheel_moment)
+    one, (other,) = solved.discs[0], solve_discs(renumbered(small), ANGLE, load, SolutionOptions(size=6.0))
     for name, shift in (("pin_load", 0), ("roller_load", ROLLERS), ("roller_load_inner", ROLLERS)):
         first, second = getattr(one.contacts, name), getattr(other.contacts, name)
         # The same circles in another order give other meshes: 1.3 elements for a half-width, a load is good to 1 % or 2.
@@ -189,9 +191,9 @@ def test_rigid_body_limit_comes_near_the_half_space_drive(solved, small):
     """
     soft, hard = (Material(youngs_modulus=value, poisson_ratio=0.3) for value in (103.0e3, 206.0e6))
     materials = replace(small.materials, disc=hard, inner_race=hard, wheel_pin=soft, roller=soft)
-    contacts = solve_disc(
-        replace(small, materials=materials), ANGLE, solved.wheel_moment, SolutionOptions(size=6.0)
-    ).contacts
+    load = WheelLoad(moment=solved.wheel_moment)
+    (found,) = solve_discs(replace(small, materials=materials), ANGLE, load, SolutionOptions(size=6.0))
+    contacts = found.contacts
     half_space = analyse(small, np.array([ANGLE]), None).full.response
     for name, limit, theirs in (
         ("pin_load", 0.17, half_space.pin_load[0]),

@@ -12,13 +12,14 @@ from refusals import refused_field
 from fem.drive.condensed import condense_drive
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.meshes import mesh_drive
-from fem.drive.pose import pair_forces, solve_pose
+from fem.drive.pose import WheelLoad, joint_problem, pair_forces, solve_pose, solve_poses
+from fem.drive.supports import Supports
 from fem.errors import MemoryLimitError, MeshError
 from fem.shapes import DriveShapes
 from fem.solid_contact.reliefs import relief_of
 from fem.solid_drive.along_width import DriveWidths, plane_part
 from fem.solid_drive.solid_bodies import condense_solids
-from fem.solid_drive.solved_disc import SolidOptions, solve_held, solve_solid_disc
+from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
 from fem.solid_drive.width_results import bore_lean, disc_lean, roller_leans, width_results
 from ltca.drive.parts import Material
 from ltca.geometry.placement import Placement
@@ -80,7 +81,8 @@ def test_without_poisson_ratio_solids_are_plane():
 
 
 def _compliance(model, state):
-    return model.contact_problem(state.pose, list(state.integrals), state.wheel_moment).compliance
+    supports = Supports.of_drive(model.drive)
+    return joint_problem([model], supports, [state.pose], [list(state.integrals)], state.wheel_moment).compliance
 
 
 @pytest.mark.nightly
@@ -90,7 +92,7 @@ def test_on_a_held_wheel_the_shaft_pins_bring_the_output_torque():
     drive = with_fields(plastic(), {"installation.held": "pin-wheel"})
     model = condense(drive).model
     start = solve_pose(model, drive.wheel_moment())
-    state = solve_held(model, drive, drive.wheel_moment(), drive.load.torque, start.pose, lambda line: None)
+    (state,) = solve_poses((model,), Supports.of_drive(drive), WheelLoad.of_drive(drive), (start.pose,))
     forces = pair_forces(model, list(state.integrals), state.contact.pressure)
     of_holes = sum(force[2] for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "hole")
     bore = [force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "roller_outer"]
@@ -99,7 +101,7 @@ def test_on_a_held_wheel_the_shaft_pins_bring_the_output_torque():
     inner, outer = bearing.inner_race_radius, bearing.outer_race_radius
     of_cage = sum(force[2] - (race.conjugate() * complex(*force[:2])).imag for force in bore)
     output = of_holes + outer / (inner + outer) * of_cage
-    # Round-off of the disc's balance, and the last change of the moment, 1e-6; its first guess is 2e-3 off.
+    # Round-off of the disc's balance; the first guess of the moment is 2e-3 off.
     assert output == pytest.approx(-drive.driving_sign * drive.load.torque, rel=5e-6)
     assert abs(state.wheel_moment) > 1.001 * abs(drive.wheel_moment())
 

@@ -22,7 +22,6 @@ def test_motions_are_those_of_disc_wheel_and_candidate_rollers(even, motions):
         disc_compliance=none,
         race_compliance=none,
         widths=SimpleNamespace(even=even),
-        drive=SimpleNamespace(hole_stiffness=1e6),
         disc_pose=lambda _: SimpleNamespace(centre=4.0 + 0.0j),
         pairs=(),
     )

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from refusals import error_says, refused_field
 
 from ltca.drive.declaration import declared_fields, declared_tables
 from ltca.drive.engine_support import ENGINES, REFUSALS, refusals, require
+from ltca.drive.members.main_bearing import BearingRow
 from ltca.drive.single_discs import single_discs
 from ltca.errors import DriveError
 from ltca.reading.changes import with_fields
@@ -64,6 +67,7 @@ def test_every_problem_is_named_at_once(engine):
             "load.external.0.force.x": 100.0,
             "pin_wheel.support_stiffness": 5e5,
             "main_bearing.clearance": 0.01,
+            "main_bearing.preload.force": 100.0,
             "main_bearing.tilt_stiffness": 1e9,
             "contact.slices": 5,
             "pin_wheel.axis_offset.y": 0.01,
@@ -73,6 +77,9 @@ def test_every_problem_is_named_at_once(engine):
             "crank.support.diameter": 20.0,
             "crank.support.positions": (-20.0, 20.0),
             "crank.support.stiffness": (2e5, 3e5),
+            "crank.support.clearance": 0.01,
+            "crank.support.preload.force": 100.0,
+            "crank.support.torsion": True,
             "carrier.stiffness_torsion": 1e8,
             "carrier.flange": (8.0, 10.0),
             "carrier.posts.number": 4,
@@ -95,6 +102,8 @@ def test_every_problem_is_named_at_once(engine):
         },
         check=False,
     )
+    row = BearingRow(plane=0.0, kind="cylindrical", radial_stiffness=1e5)
+    drive = replace(drive, main_bearing=replace(drive.main_bearing, bearings=(row,)))
     of_cranks = ("crank.number", "crank.circle_radius", "crank.angle", "disc.of.", "installation.")
     rows = [row for row in REFUSALS if engine in row.engines and not row.path.startswith(of_cranks)]
     with pytest.raises(DriveError) as refused:
