@@ -11,8 +11,8 @@ from ltca.output.resources import require_room
 MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 2000.0, 1.4, 3.2
 """Memory for one pair of contacts at one position of a drive of one disc, bytes, and its factors with several discs and where
 pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 1.9 kB at 12 positions of the
-paper's drive on half-spaces and 4.1 kB on a ring, 1.1 kB for the joint and 8.8 kB for it on a ring. Analyses of all cases are held
-together, their working memory once."""
+paper's drive on half-spaces and 4.1 kB on a ring, 1.1 kB for the joint and 8.8 kB for it on a ring. Analyses of all cases are
+held together, their working memory once."""
 IN_SLICES, PER_SLICE = 2000.0, 1000.0
 """Memory for a pair in slices at one position beside that, and for each of its slices, bytes: 6.7, 12 and 22 kB by pair with 3, 9
 and 21 slices at 12 positions of the paper's drive."""
