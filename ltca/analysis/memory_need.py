@@ -8,14 +8,14 @@ from pathlib import Path
 from ltca.drive.parts import Drive
 from ltca.output.resources import require_room
 
-MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 1300.0, 2.0, 2.2
+MEMORY_PER_PAIR, SEVERAL_DISCS, DISPLACED_PINS = 2000.0, 1.4, 3.2
 """Memory for one pair of contacts at one position of a drive of one disc, bytes, and its factors with several discs and where
-pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 0.6 kB (half-space) and 1.3 kB
-(hybrid) for the paper's drive, 1.6 and 2.6 kB for the joint, 2.3 and 4.1 kB for it on a ring, 4.3 kB with friction. Analyses of
-all cases are held together, their working memory once."""
-PER_SLICE = 1000.0
-"""Memory for each slice of a pair at one position beside that, bytes: 0.6 kB measured for the paper's drive with 9 and 17 at 240
-positions, 0.9 kB at twelve."""
+pins are displaced, whose forces and slopes are solved together. At the most: by position and pair 1.9 kB at 12 positions of the
+paper's drive on half-spaces and 4.1 kB on a ring, 1.1 kB for the joint and 8.8 kB for it on a ring. Analyses of all cases are
+held together, their working memory once."""
+IN_SLICES, PER_SLICE = 2000.0, 1000.0
+"""Memory for a pair in slices at one position beside that, and for each of its slices, bytes: 6.7, 12 and 22 kB by pair with 3, 9
+and 21 slices at 12 positions of the paper's drive."""
 DISC_PER_PAIR, DISC_PER_SLICE = 60.0, 32.0
 """Of results.nc, 2 kB for each position of the paper's drive; for each slice of a pair line loads and pressures, 27 measured."""
 
@@ -44,7 +44,7 @@ def memory_per_position(drive: Drive) -> float:
 
 def _of_slices(drive: Drive) -> float:
     """Memory for the slices of a pair at one position, bytes: none in the plane."""
-    return PER_SLICE * drive.contact.slices if drive.contact.slices > 1 else 0.0
+    return IN_SLICES + PER_SLICE * drive.contact.slices if drive.contact.slices > 1 else 0.0
 
 
 def _displaces_pins(drive: Drive) -> bool:

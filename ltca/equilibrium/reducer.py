@@ -135,7 +135,7 @@ class Reducer:
         return found
 
     def whole_tangent(self, crank_angle: FloatArray, pose: FloatArray, start: Start, lever: FloatArray) -> FloatArray:
-        """Return the derivative of the force by the pose with nothing left out (`ltca.mechanics.full_tangent`)."""
+        """Return the derivative of the force by the pose with nothing left out but friction (`ltca.mechanics.full_tangent`)."""
         most = min(POSITIONS_AT_ONCE, ContactSystem(self).positions_at_once)
         found = []
         for rows in np.array_split(np.arange(crank_angle.size), max(1, -(-crank_angle.size // most))):
