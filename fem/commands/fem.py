@@ -102,7 +102,6 @@ def execute(arguments: argparse.Namespace) -> int:
     CycloError
         For wrong input, no convergence, or meshes that would not fit into memory.
     """
-    from ltca.errors import DriveError
     from ltca.output.run_folder import claimed_folder
 
     refuse_mixed_options(arguments)
@@ -117,9 +116,8 @@ def execute(arguments: argparse.Namespace) -> int:
     file, case, drive = chosen_case(arguments)
     name = file.name
     out = arguments.out or default_folder(name, "fem")
-    if drive.ring is not None and (arguments.export or referee):
-        option = "--referee" if referee else "--export"
-        raise DriveError([f"ring: must be left out for {option} calculix, whose deck holds the pins in a rigid wheel"])
+    if arguments.export or referee:
+        _require_deck(drive, "--referee" if referee else "--export")
     discs = drive.disc.number_of_discs
     writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
     writes += [] if arguments.no_page else ["report.html"]
@@ -237,6 +235,25 @@ def ring_words(drive: Drive) -> str:
     if drive.ring is None or drive.ring.model == "fe":
         return ""
     return 'the ring is a plane mesh with the seats of the wheel pins here; analyses have it as a beam (ring.model = "beam")'
+
+
+def _require_deck(drive: Drive, option: str) -> None:
+    """Refuse what the deck for CalculiX does not hold: a ring, pins that bend, cranks and a wheel that yield."""
+    from ltca.errors import DriveError
+
+    shaft = drive.pin_shaft
+    given = {
+        "ring": drive.ring,
+        "pin_wheel.beam": drive.pin_wheel.beam,
+        "pin_shaft.beam": None if shaft is None else shaft.beam,
+        "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
+        "main_bearing": drive.main_bearing,
+        "crank.support": drive.crank.support,
+        "carrier.posts": drive.posts,
+    }
+    said = f"must be left out for {option} calculix, whose deck has a rigid wheel, rigid cranks and pins on springs"
+    if found := [f"{path}: {said}" for path, value in given.items() if value is not None]:
+        raise DriveError(found)
 
 
 def _print_contacts(solution: FullSolution) -> None:

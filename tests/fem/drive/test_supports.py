@@ -72,7 +72,7 @@ def test_springs_yield_alone():
 
 @pytest.mark.parametrize(("pressed", "carried"), [("one way", False), ("around", False), ("outward", True)])
 def test_a_floating_flange_carries_what_does_not_move_it(pressed, carried):
-    """Equal forces on all pins, one way or around, take the flange along: slope zero at the tip, F a³(4L − 3a)/12EIL. Outward ones
+    """Equal forces on all pins, one way or around, take the flange along: no slope at the tip, F a³(4L − 3a)/12EIL. Outward ones
     balance on it, and tips stand still: F a³(L − a)³/3EIL³. A disc is 8 mm thick on 200 mm.
     """
     drive = joint(**LONG)

@@ -117,15 +117,12 @@ def test_springs_balance_and_do_not_ask_for_numbers(small):
     assert np.ptp(loads) > 0.1 * size
 
 
-def test_members_that_yield_are_refused_by_name(rv):
+@pytest.mark.parametrize(("field", "value"), [("clearance", 0.01), ("torsion", True)])
+def test_members_that_yield_otherwise_than_springs_are_refused_by_name(rv, field, value):
     support = parse_drive(shipped_drive("rv"), "rv").cases["nominal"].crank.support
-    for drive, field in (
-        (replace(rv, crank=replace(rv.crank, support=support)), "crank.support"),
-        (replace(rv, pin_wheel=replace(rv.pin_wheel, support_stiffness=5e5)), "pin_wheel.support_stiffness"),
-    ):
-        for refused in (solve_reducer, expect_contacts):
-            with refused_field(field):
-                refused(single_discs(drive)[0], ANGLE)
+    yielding = replace(rv, crank=replace(rv.crank, support=replace(support, **{field: value})))
+    with refused_field(f"crank.support.{field}"):
+        solve_reducer(yielding, ANGLE)
 
 
 @pytest.mark.slow
