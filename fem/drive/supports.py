@@ -56,7 +56,7 @@ class Supports:
         if (bearing := wheel_law(drive)) is not None:
             assert isinstance(bearing, float)
             wheel.append(np.tile(np.eye(2), (discs * pins, discs * pins)) / bearing)
-        return cls(wheel=sum(wheel) if wheel else None, shaft=_of_pin_shaft(drive))
+        return cls(wheel=np.sum(wheel, axis=0) if wheel else None, shaft=_of_pin_shaft(drive))
 
     def moved(
         self, on_wheel: ComplexArray, on_shaft: ComplexArray, on_cranks: ComplexArray

@@ -85,7 +85,7 @@ class ReducerSolution:
     @property
     def transmission_error(self) -> float:
         """Deviation of the output, ccw positive, rad."""
-        return self.drive.output_per_wheel_angle * self.wheel_angle
+        return float(self.drive.output_deviation(self.wheel_angle, self.torque))
 
     @property
     def ring_displacements(self) -> ComplexArray | None:

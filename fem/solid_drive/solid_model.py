@@ -102,7 +102,7 @@ class SolidModel(PlacedContacts):
 
     def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side by its pressures, MPa, shape (3, m)."""
-        return np.kron(integral.force, self.grids[pair.kind].moments(np.ones_like))
+        return np.asarray(np.kron(integral.force, self.grids[pair.kind].moments(np.ones_like)), dtype=float)
 
     def couple_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> complex:
         """Return ∫ z dF of the force on the round side of a pair, N·mm; zero where pressures are even."""

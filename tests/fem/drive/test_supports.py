@@ -170,6 +170,16 @@ def test_the_ltca_with_the_same_supports_says_the_same(more, tmp_path, monkeypat
     np.testing.assert_allclose(full.torque_share, own.torque_share[0], atol=2e-3)
 
 
+def test_a_carrier_that_twists_turns_the_output_alone():
+    """By T/k_T against the wind-up."""
+    drive = joint(**{"carrier.stiffness_torsion": 2e8})
+    rigid = joint()
+    found, other = (solve_reducer(each, ANGLE, SolutionOptions(size=6.0)) for each in (drive, rigid))
+    twist = drive.load.torque / 2e8
+    assert abs(found.transmission_error) - abs(other.transmission_error) == pytest.approx(twist, rel=1e-9)
+    assert found.wheel_angle == pytest.approx(other.wheel_angle, rel=1e-12)
+
+
 def test_beams_were_refused_by_full_finite_elements():
     """And springs in their place let the discs share the torque alike; coarse meshes are enough to see it."""
     full = solve_reducer(joint(**CLAMPED), ANGLE, SolutionOptions(size=6.0))
