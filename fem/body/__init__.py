@@ -3,7 +3,6 @@
 Modules in the order data passes:
 
 ================  ============================================================
-assembly          Stiffness of all elements in one product of matrices, and its sum by nodes
 elasticity        Plane linear elasticity of one meshed body: stiffness, rigid modes, distributed loads, energy
 surface           Contact zones on meshed boundaries: the side that carries the pressure and the side opposite
 sparse_factor     Factors of sparse matrices, and what is said where memory is not enough for one

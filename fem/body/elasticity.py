@@ -13,10 +13,9 @@ from typing import Literal
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
-from skfem.models.elasticity import lame_parameters
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
+from skfem.models.elasticity import lame_parameters, linear_elasticity
 
-from fem.body.assembly import elastic_blocks, jacobians, shape_functions, sum_by_nodes
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import FloatArray, IntArray
 from ltca.drive.parts import Material
@@ -66,18 +65,19 @@ def assemble_stiffness(
     The thickness is in mm.
     """
     lam, mu = plane_lame_parameters(material, state)
-    curved = curved_elements(body)
-    straight, bent = np.flatnonzero(~curved), np.flatnonzero(curved)
-    lam, mu = thickness * lam, thickness * mu
-    # Curved elements cost six times as many points; they lie along the boundary only.
-    blocks = np.concatenate(
-        [
-            elastic_blocks(body, straight, STRAIGHT_QUADRATURE, lam=lam, mu=mu, straight=True),
-            elastic_blocks(body, bent, CURVED_QUADRATURE, lam=lam, mu=mu, straight=False),
-        ],
-        axis=-1,
-    )
-    return sum_by_nodes(body, np.concatenate([straight, bent]), blocks)
+    form, curved = linear_elasticity(thickness * lam, thickness * mu), curved_elements(body)
+    # Curved elements cost twice as many points; they lie along the boundary only.
+    parts = [
+        form.assemble(Basis(body.mesh, _vector_element(body), elements=elements, intorder=order))
+        for elements, order in (
+            (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
+            (np.flatnonzero(curved), CURVED_QUADRATURE),
+        )
+        if elements.size
+    ]
+    found = sp.csc_matrix(sum(parts[1:], parts[0]))
+    found.sort_indices()
+    return found
 
 
 def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
@@ -98,22 +98,20 @@ def area_loads(body: BodyMesh, centre: complex = 0j) -> FloatArray:
     ``rigid_modes(body).T @ area_loads(body)``); they also spread a reaction evenly over the body. Units are mm², mm² and mm³
     for a unit of body force.
     """
-    nodes = body.element_nodes.T
-    values, slopes, weights = shape_functions(body, CURVED_QUADRATURE)
-    jacobian = jacobians(body, np.arange(nodes.shape[1]), slopes)
-    area = weights[:, None] * (jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0])
-    x, y = np.einsum("qn,ane->aqe", values, body.mesh.doflocs[:, nodes], optimize=True)
-
-    def integrate(field: FloatArray) -> FloatArray:
-        """∫ N_i f dA of a field given at the quadrature points of every element."""
-        amounts = (values.T @ (area * field)).ravel()
-        return np.asarray(np.bincount(nodes.ravel(), weights=amounts, minlength=body.node_count), dtype=float)
-
     loads = np.zeros((body.unknowns, 3))
-    loads[0::2, 0] = loads[1::2, 1] = integrate(np.ones_like(x))
-    loads[0::2, 2] = -integrate(y - centre.imag)
-    loads[1::2, 2] = integrate(x - centre.real)
+    loads[0::2, 0] = loads[1::2, 1] = loads_by_nodes(body, lambda x, y: np.ones_like(x))
+    loads[0::2, 2] = loads_by_nodes(body, lambda x, y: centre.imag - y)
+    loads[1::2, 2] = loads_by_nodes(body, lambda x, y: x - centre.real)
     return loads
+
+
+def loads_by_nodes(
+    body: BodyMesh, density: Callable[[FloatArray, FloatArray], FloatArray], elements: IntArray | None = None
+) -> FloatArray:
+    r"""Return :math:`\int N_i f\,dA` of a density f(x, y) over some elements, all by default, shape (nodes,)."""
+    element = ElementTriP2() if body.order == 2 else ElementTriP1()
+    basis = Basis(body.mesh, element, elements=elements, intorder=CURVED_QUADRATURE)
+    return np.asarray(LinearForm(lambda v, w: density(w.x[0], w.x[1]) * v).assemble(basis))
 
 
 def unknowns_of_nodes(nodes: IntArray) -> IntArray:

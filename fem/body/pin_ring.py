@@ -20,9 +20,8 @@ from math import gcd
 import numpy as np
 import scipy.sparse as sp
 
-from fem.body.assembly import jacobians, shape_functions
 from fem.body.condensation import condense_body
-from fem.body.elasticity import CURVED_QUADRATURE, assemble_stiffness, unknowns_of_boundary
+from fem.body.elasticity import assemble_stiffness, loads_by_nodes, unknowns_of_boundary
 from fem.body.sparse_factor import factor_sparse
 from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, quadratic_shapes, quadratic_slopes
 from fem.mesh.body_mesh import BodyMesh
@@ -225,14 +224,11 @@ def _patch_load(body: BodyMesh, centre: complex, radius: float) -> sp.csc_matrix
     """Nodal forces of unit forces in x and y over a round patch, shape (unknowns, 2); densest in its middle, 1 − (d/r)²."""
     nodes = body.element_nodes.T
     near = np.flatnonzero(np.min(np.abs(body.places[nodes] - centre), axis=0) < radius)
-    values, slopes, weights = shape_functions(body, CURVED_QUADRATURE)
-    jacobian = jacobians(body, near, slopes)
-    area = weights[:, None] * (jacobian[:, 0, 0] * jacobian[:, 1, 1] - jacobian[:, 0, 1] * jacobian[:, 1, 0])
-    places = np.einsum("qn,ne->qe", values, body.places[nodes[:, near]])
-    dense = np.maximum(1.0 - np.abs(places - centre) ** 2 / radius**2, 0.0)
-    amounts = np.bincount(
-        nodes[:, near].ravel(), weights=(values.T @ (area * dense)).ravel(), minlength=body.node_count
-    )
+
+    def dense(x: FloatArray, y: FloatArray) -> FloatArray:
+        return np.maximum(1.0 - ((x - centre.real) ** 2 + (y - centre.imag) ** 2) / radius**2, 0.0)
+
+    amounts = loads_by_nodes(body, dense, near)
     amounts = amounts / amounts.sum()
     load = np.zeros((body.unknowns, 2))
     load[0::2, 0] = load[1::2, 1] = amounts
