@@ -13,7 +13,7 @@ from ltca.compliance.coefficients import InfluenceCoefficients
 from ltca.compliance.response import ContactPressures
 from ltca.drive.hole_contact import shaft_pins_yield
 from ltca.drive.parts import Compliance, Drive
-from ltca.geometry.coordinates import disc_displacement
+from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, disc_displacement
 from validation.compare.comparison import Kind, KindAnswer, PositionAnswer
 
 MODELS: tuple[Compliance, ...] = ("half-space", "fe", "hybrid")
@@ -49,10 +49,10 @@ def answers_of(analysis: LoadedAnalysis) -> list[PositionAnswer]:
             },
             bearing_radial=analysis.bearing_radial[row, 0],
             bearing_tangential=analysis.bearing_tangential[row, 0],
-            wheel_angle=float(full.pose[row, 3]),
+            wheel_angle=float(full.pose[row, WHEEL_ANGLE]),
             disc_radial=float(displacement[row].real),
             disc_tangential=float(displacement[row].imag),
-            disc_rotation=float(full.pose[row, 2]),
+            disc_rotation=float(full.pose[row, DISC_ROTATION]),
         )
         for row in range(full.crank_angle.size)
     ]
