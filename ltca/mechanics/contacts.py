@@ -582,9 +582,13 @@ class Linearised:
         if not self.held:  # where pins are held, what they will press is found by those that are not
             after += self.moved_by_pins[:, 0]
         after[self.row, self.contacts] = self.of_chosen(self.deformation)[:, 0] + self.de[:, 0]
+        before = self.deformation[:, 0].copy()
         for _, bores, _, races in self.system.of_kind:
-            after[:, bores] = after[:, races] = 0.5 * (after[:, bores] + after[:, races])
-        return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, after), axis=1, initial=0.0))
+            for each in (before, after):
+                each[:, bores] = each[:, races] = 0.5 * (each[:, bores] + each[:, races])
+        # Crowned ones in slices are open up to a depth: only what is deeper than where they were found open counts.
+        pressed = np.minimum(after, after - before)
+        return np.asarray(np.max(np.where(self.stiffness[0] > 0.0, 0.0, pressed), axis=1, initial=0.0))
 
     @cached_property
     def moved_by_pins(self) -> FloatArray:

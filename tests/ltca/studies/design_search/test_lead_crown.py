@@ -53,6 +53,12 @@ def pressed(drop, text=ASKED):
     return float(found.largest.max()), float(np.nanmax(found.mid))
 
 
+def test_a_crowned_flank_that_hardly_touches_was_told_not_to_settle():
+    """In slices it is open up to a depth, which was counted as a correction for ever: no crown balanced at the light torque."""
+    found = analyse(drive_of(ROW | {"lead_crown_drop": 0.018}, parse_requirements(ASKED)), ANGLES[:3])
+    assert found.light.residual.max() < 1e-6 * found.light.response.pin_load.max()
+
+
 @pytest.mark.slow
 def test_a_candidate_has_the_crown_that_takes_the_load_off_its_ends():
     """As much as the advice tells (`tests/ltca/analysis/test_width.py`); what the middle may have and the shop makes bound it."""
