@@ -42,6 +42,8 @@ FEM_MAY_IMPORT = (
     "ltca.page.verdict_tables",
     "ltca.figures.house_style",
     "ltca.export",
+    # The flexibility of what holds pins and cranks, where that is no body of finite elements.
+    "ltca.beam", "ltca.laws.carrier", "ltca.laws.member_bearings",
     # One command writes parts and, handed on whole, models for simulators: nothing of these comes back.
     "ltca.commands.reduced_model",
 )  # fmt: skip

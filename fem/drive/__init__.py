@@ -7,7 +7,7 @@ contact_kinds      The kinds of contacts, and what each is called in results, ta
 rigid_bodies       The bodies as rigid ones: places, approaches, gaps
 expected_contacts  Where contacts are to be expected at a crank angle, with which load and half-width: a guess, for
                    grading meshes
-ring               The elastic ring behind the wheel pins: its flexibility at their seats
+supports           What holds pins and cranks: ring and bearing of the wheel, beams, springs, posts, shafts
 meshes             Meshes of all bodies of a drive, graded for the contacts expected at a crank angle
 model              Condensed finite-element model of a drive on given meshes: bodies, contact pairs, compliance at a
                    pose

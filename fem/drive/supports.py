@@ -21,9 +21,9 @@ from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.drive.ring_shape import ring_shape
 from ltca.drive.single_discs import single_discs
-from ltca.equilibrium.supports import crank_springs, wheel_law
 from ltca.geometry.placement import Placement
 from ltca.laws.carrier import far_flange_stiffness
+from ltca.laws.member_bearings import crank_springs, wheel_law
 
 MAX_KEPT = 8
 """Rings that a process keeps: all positions and discs of a drive have the same."""

@@ -1,8 +1,6 @@
 """A drive of any number of discs by full finite elements: a separate problem for each disc, with one common wheel angle.
 
 ===============  ===============================================================
-shares           Part of the wheel's moment that each disc carries: iteration of the moments until the wheel angles agree
-mixing           A fixed point from the last rounds of an iteration: seats of the ring that several discs press
 solution         Solution of a drive at one crank angle with either member held
 series           Solutions at one crank angle after the other; condensed pins and rollers are reused
 wall_references  Stress along walls on nested meshes against closed forms

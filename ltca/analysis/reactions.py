@@ -13,8 +13,8 @@ from ltca.beam import support_parts
 from ltca.compliance.response import bearing_moments, bearing_pushes
 from ltca.equilibrium.external_force import entries_of
 from ltca.equilibrium.first_stage import MeshForces
-from ltca.equilibrium.supports import crank_laws, journals, wheel_axial_stiffness, wheel_rows
 from ltca.geometry.rotation import unit
+from ltca.laws.member_bearings import crank_laws, journals, wheel_axial_stiffness, wheel_rows
 
 
 def reaction_values(analysis: LoadedAnalysis) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from ltca.drive.fields import read_field
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
 from ltca.drive.single_discs import single_discs
-from ltca.equilibrium.supports import crank_stiffness
+from ltca.laws.member_bearings import crank_stiffness
 
 LEAST_INEQUALITY = 0.05
 """Difference of a disc's part of the torque from an equal one, by that, from which a cause is named."""

@@ -26,9 +26,9 @@ from ltca.dynamics.masses import (
     drive_masses,
 )
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.supports import crank_springs
 from ltca.errors import DriveError, Problem
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, Coordinates, X
+from ltca.laws.member_bearings import crank_springs
 
 OF_WHEEL = (WHEEL_PINS, SLEEVES[WHEEL_PINS], RING)
 OF_SHAFT = (SHAFT_PINS, SLEEVES[SHAFT_PINS], POSTS)

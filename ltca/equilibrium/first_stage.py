@@ -14,10 +14,10 @@ import numpy as np
 from ltca.arrays import ComplexArray, FloatArray, by_drive
 from ltca.beam import shaft_flexibility, support_parts
 from ltca.drive.parts import Drive
-from ltca.equilibrium.supports import crank_springs, journals
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.placement import BatchScalar
 from ltca.geometry.rotation import unit
+from ltca.laws.member_bearings import crank_springs, journals
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

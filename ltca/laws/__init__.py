@@ -16,6 +16,7 @@ seats                  Conforming seats: contact over a given arc, series over t
 conforming             A pin in a bore that is hardly larger, with a datum; a sleeve on its pin
 ring_beam              The ring of the pin wheel as a curved beam
 bearing_pair           Rolling bearings in five directions in closed form, and bearings with clearance or preload
+member_bearings        Stiffness and laws of the bearings of cranks and wheel, and of crankshafts between them
 backed                 A contact in series with the seat of a loose pin or sleeve and with the bending of the pin
 carrier                Posts and flanges of a carrier: forces on the far flange by its motion against the near one
 =====================  ============================================================

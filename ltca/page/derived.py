@@ -16,7 +16,6 @@ from ltca.drive.pin_beams import shaft_pin_spring, two_digits
 from ltca.drive.single_discs import equal_parts, single_discs
 from ltca.drive.units.quantities import ARCMIN
 from ltca.equilibrium.first_stage import StageMesh
-from ltca.equilibrium.supports import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE
 from ltca.geometry.first_contact import backlash, interference
 from ltca.geometry.interference import overlap_at_rest
@@ -25,6 +24,7 @@ from ltca.geometry.placement import position_angles
 from ltca.geometry.play import play_over_a_turn, preload_words
 from ltca.laws.bearing_pair import SideLaw, bearing_matrix
 from ltca.laws.carrier import far_flange_stiffness
+from ltca.laws.member_bearings import crank_bearing_stiffness, crank_laws, wheel_law, wheel_rows
 from ltca.quantities import SCALARS
 
 Rows = list[tuple[str, str]]

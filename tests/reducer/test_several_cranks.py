@@ -14,9 +14,9 @@ from ltca.drive.parts import CrankSupport
 from ltca.drive.single_discs import equal_parts
 from ltca.equilibrium.output_torque import solve_at_output
 from ltca.equilibrium.reducer import bearing_forces
-from ltca.equilibrium.supports import crank_stiffness
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import DISC_ROTATION, WHEEL_ANGLE, X, Y
+from ltca.laws.member_bearings import crank_stiffness
 from ltca.laws.spring import SpringLaw
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import parse_drive, shipped_drive

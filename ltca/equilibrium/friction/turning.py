@@ -12,10 +12,10 @@ from ltca.beam import support_parts
 from ltca.compliance.response import DiscResponse
 from ltca.drive.parts import Drive, PinShaft, PinWheel
 from ltca.equilibrium.friction.slip import Slip
-from ltca.equilibrium.supports import crank_laws, wheel_law
 from ltca.geometry.coordinates import DISC_ROTATION
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.bearing_pair import SideLaw
+from ltca.laws.member_bearings import crank_laws, wheel_law
 from ltca.mechanics.places import DiscPlaces
 
 FADING_SLIP = 1e-4

@@ -14,11 +14,12 @@ from ltca.arrays import stack_drives
 from ltca.drive.parts import Preload
 from ltca.drive.single_discs import single_discs
 from ltca.equilibrium.output_torque import solve_at_output
-from ltca.equilibrium.supports import Supports, crank_laws, wheel_law, wheel_rows
+from ltca.equilibrium.supports import Supports
 from ltca.errors import DriveError
 from ltca.geometry.coordinates import Coordinates
 from ltca.geometry.pairs import ContactGeometry
 from ltca.laws.bearing_pair import SideLaw, bearing_matrix
+from ltca.laws.member_bearings import crank_laws, wheel_law, wheel_rows
 from ltca.page.derived import derived_rows
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import build_drive, load_drive, parse_drive, parse_toml, shipped_drive

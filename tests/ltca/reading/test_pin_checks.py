@@ -176,5 +176,5 @@ def test_commands_refuse_by_name_with_status_2(words, tmp_path, capsys):
     assert main([words[0], str(path), *words[1:], "--out", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
     assert "pin_wheel.seat" in told
-    assert "pin_wheel.beam" in told
+    assert ("pin_wheel.beam" in told) is (words[0] == "run")  # full finite elements bend pins
     assert "pin_shaft.seat" in told
