@@ -38,8 +38,11 @@ def test_a_function_has_one_thread_and_gives_the_others_back():
         return blas_threads(), number + other
 
     with threadpool_limits(2, user_api="blas"):
+        # A library that was loaded after a command had asked for one thread stays at one.
+        given = blas_threads()
+        assert 2 in given
         assert counted(1, other=2) == ({1}, 3)
-        assert blas_threads() == {2}
+        assert blas_threads() == given
     assert counted.__doc__ == "A docstring."
 
 
