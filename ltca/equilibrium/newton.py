@@ -33,7 +33,7 @@ MAX_REDUCTION_STEPS = 60
 """Trial steps of the iteration that reduces the residual of a position with friction."""
 RESTART_PERTURBATIONS = (0.0, *(0.02,) * 4, *(0.1,) * 4, *(0.4,) * 4)
 """Relative perturbations of the pose tried at restarts: friction may catch a disc that carries next to nothing."""
-HOLDING, HELD = 0.1, 1e-8
+HOLDING, HELD = 0.1, 1e-9
 """Residuals, relative to the load, between which the moment that holds the wheel follows the contacts."""
 RIDGE = 1e-9
 """Largest negative stiffness of a mode at a minimum by the stiffest: that of round-off."""
