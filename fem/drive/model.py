@@ -250,6 +250,11 @@ class PlacedContacts(ABC):
         return int(self.pairs[-1].unknowns.stop)
 
     @property
+    def motion_count(self) -> int:
+        """Number of motions of a contact problem."""
+        return 4 + len(self.rollers)
+
+    @property
     def rollers(self) -> tuple[int, ...]:
         """Rollers with candidate contacts, in the order of their motions."""
         return tuple(pair.index for pair in self.pairs if pair.kind == "roller_outer")

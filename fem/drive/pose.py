@@ -136,15 +136,13 @@ def joint_problem(
         model.contact_problem(pose, each, wheel_moment)
         for model, pose, each in zip(models, poses, integrals, strict=True)
     ]
-    count = sum(problem.gap.size for problem in problems)
     gap = np.concatenate([problem.gap for problem in problems])
-    if len(problems) == 1:
-        compliance, motions, external = problems[0].compliance, problems[0].motions, problems[0].external
-    else:
-        compliance = np.zeros((count, count))
-        motions = np.zeros((count, sum(problem.motions.shape[1] - 1 for problem in problems) + 1))
-        external = np.zeros(motions.shape[1])
-        for own, columns, problem in zip(_unknowns(models), _motions(problems), problems, strict=True):
+    compliance, motions, external = problems[0].compliance, problems[0].motions, problems[0].external
+    if len(problems) > 1:
+        places = _motions(models)
+        compliance = np.zeros((gap.size, gap.size))
+        motions, external = np.zeros((gap.size, int(places[-1].max()) + 1)), np.zeros(int(places[-1].max()) + 1)
+        for own, columns, problem in zip(_unknowns(models), places, problems, strict=True):
             compliance[own, own] = problem.compliance
             motions[own, columns] = problem.motions
             external[columns] = problem.external
@@ -173,17 +171,15 @@ def _unknowns(models: Sequence[PlacedContacts]) -> list[slice]:
     return [slice(first, last) for first, last in pairwise(ends)]
 
 
-def _motions(problems: Sequence[ContactProblem]) -> list[NDArray[np.intp]]:
-    """Place of every motion of every disc among those of all."""
-    found, last = [], 0
-    for number, problem in enumerate(problems):
-        size = problem.motions.shape[1]
-        own = np.arange(last, last + size)
-        if number:
-            own = np.insert(own[:-1], WHEEL, WHEEL)
-        found.append(own)
-        last += size - (number > 0)
-    return found
+def _motions(models: Sequence[PlacedContacts]) -> list[NDArray[np.intp]]:
+    """Place of every motion of every disc among those of all: the wheel's stands with the first."""
+    places = [np.arange(models[0].motion_count)]
+    last = models[0].motion_count
+    for model in models[1:]:
+        own = np.arange(last, last + model.motion_count - 1)
+        places.append(np.insert(own, WHEEL, WHEEL))
+        last += own.size
+    return places
 
 
 def solve_pose(
@@ -308,22 +304,16 @@ def _by_disc(models: Sequence[PlacedContacts], found: ContactSolution) -> list[C
     """The solution of every disc, with the motion of the wheel among its own."""
     if len(models) == 1:
         return [found]
-    parts, last = [], 0
-    for number, own in enumerate(_unknowns(models)):
-        size = 4 + len(models[number].rollers) - (number > 0)
-        motion = found.motion[last : last + size]
-        motion = np.insert(motion, WHEEL, found.motion[WHEEL]) if number else motion
-        last += size
-        parts.append(
-            replace(
-                found,
-                pressure=found.pressure[own],
-                motion=motion,
-                opening=found.opening[own],
-                active=found.active[own],
-            )
+    return [
+        replace(
+            found,
+            pressure=found.pressure[own],
+            motion=found.motion[columns],
+            opening=found.opening[own],
+            active=found.active[own],
         )
-    return parts
+        for own, columns in zip(_unknowns(models), _motions(models), strict=True)
+    ]
 
 
 def _move(

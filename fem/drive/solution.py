@@ -52,6 +52,8 @@ COARSE_MARGIN = 1.0
 # coarse stage are off by.
 FINE_MARGIN = 0.05
 MAX_GRADINGS = 5
+# A disc below this part of the mean share floats in its play: its place is indeterminate.
+LEAST_SHARE = 1e-3
 # Meshes are graded a little finer than asked, so that loads that still change by some per cent do not matter.
 SIZE_RESERVE = 0.96
 
@@ -322,7 +324,16 @@ def solve_discs(
         say=say,
         watch=watch,
     )
-    models, found = task.solve_guess(start, rounds)
+    try:
+        models, found = task.solve_guess(start, rounds)
+    except ConvergenceError as error:
+        if (idle := _idle_disc(discs, crank_angle, load.moment)) is None:
+            raise
+        raise ConvergenceError(
+            f"disc {idle} carries less than {LEAST_SHARE:g} of the mean share of the wheel's moment: finite elements cannot "
+            "say where a disc without load rests",
+            error.history,
+        ) from None
     rounds, complaints = _with_groups(rounds, models), ["coarse"] * len(discs)
     for grading in range(1, MAX_GRADINGS + 1):
         models, found = task.solve_graded(models, found, complaints, grading, rounds)
@@ -339,6 +350,21 @@ def solve_discs(
         say(f"meshes graded anew ({grading}): {complaint}")
     hint = "; use smaller elements" if options.size > COARSE_SIZE else ""
     raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
+
+
+def _idle_disc(discs: Sequence[_Disc], crank_angle: float, moment: float) -> int | None:
+    """The first disc that is hardly touched where another one carries all of the moment, by springs between rigid bodies."""
+
+    def wound(disc: _Disc, part: float) -> float:
+        guess = expect_contacts(disc.drive, crank_angle, wheel_moment=part * moment)
+        return float(np.sign(moment)) * guess.wheel_angle
+
+    alone = [wound(disc, 1.0) for disc in discs]
+    for number, disc in enumerate(discs):
+        others = alone[:number] + alone[number + 1 :]
+        if others and min(others) < wound(disc, LEAST_SHARE / len(discs)):
+            return number
+    return None
 
 
 def _solutions(

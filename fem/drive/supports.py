@@ -15,7 +15,7 @@ import scipy.linalg as sla
 
 from fem.body.pin_ring import seat_flexibility
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.beam import PinBeam, shaft_flexibility, support_parts
+from ltca.beam import PinBeam, support_parts
 from ltca.drive.fingerprints import fingerprint_of
 from ltca.drive.parts import Drive
 from ltca.drive.pin_beams import from_start, shaft_pin_beam, wheel_pin_beam
@@ -23,7 +23,7 @@ from ltca.drive.ring_shape import ring_shape
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.laws.carrier import far_flange_stiffness
-from ltca.laws.member_bearings import crank_springs, wheel_law
+from ltca.laws.member_bearings import crank_flexibility, wheel_law
 
 MAX_KEPT = 8
 """Rings that a process keeps: all positions and discs of a drive have the same."""
@@ -110,19 +110,16 @@ def _of_pin_shaft(drive: Drive) -> FloatArray:
     )
     place, posts = Placement.of_drive(single_discs(drive)[0]), far_flange_stiffness(drive)
     of_pins = np.eye(discs) / drive.hole_stiffness if beam is None else _bending(beam, drive)
-    support, of_cranks = drive.crank.support, np.zeros((discs, discs))
-    if support is not None:
-        planes, modulus = drive.disc.disc_planes, drive.materials.crankshaft.youngs_modulus
-        of_cranks = shaft_flexibility(planes, support.positions, crank_springs(drive), support.diameter, modulus)
-    found = sla.block_diag(_each_alone(of_pins, pins), _each_alone(of_cranks, cranks))
+    of_cranks = crank_flexibility(drive)
+    rigid = np.zeros((discs, discs))
+    found = sla.block_diag(_each_alone(of_pins, pins), _each_alone(rigid if of_cranks is None else of_cranks, cranks))
     stiffness, shares = np.zeros((3, 3)) if posts is None else posts, [np.zeros(discs), np.zeros(discs)]
     tips, seats = _carried_by_flange(place.shaft_pin_centres), _carried_by_flange(place.crank_axes)
     if beam is not None and beam.ends[1] != "free":
         stiffness = stiffness + beam.tip_stiffness * tips.T @ tips
         shares[0] = np.asarray(beam.tip_shape(from_start(beam, drive).tolist(), drive.disc.thickness))
-    if (
-        posts is not None and (bearings := drive.crank_supports) is not None
-    ):  # rigid cranks stand on both flanges as well
+    bearings = drive.crank_supports  # of rigid cranks as well
+    if posts is not None and bearings is not None:
         shares[1] = support_parts(drive.disc.disc_planes, bearings)[1]
     if not np.any(shares):
         return np.asarray(found)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.drive.condensed import keep_rounds
 from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.meshes import require_model_memory
@@ -118,10 +117,7 @@ class ReducerSolution:
     @property
     def rounds(self) -> tuple[RoundGroup, ...]:
         """Condensed pins and rollers of all discs, to start another solution with."""
-        found: tuple[RoundGroup, ...] = ()
-        for disc in self.discs:
-            found = keep_rounds(found, disc.rounds)
-        return found
+        return self.discs[0].rounds
 
     @property
     def unknowns(self) -> int:

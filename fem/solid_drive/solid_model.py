@@ -83,6 +83,12 @@ class SolidModel(PlacedContacts):
         own = self.disc.unknowns + self.race_unknowns + sum(group.unknowns for group in self.groups)
         return own + self.unknown_count
 
+    @property
+    def motion_count(self) -> int:
+        """Number of motions of a contact problem, with tilts unless all is even along the width."""
+        straight = 4 + len(self.rollers)
+        return straight if self.widths.even else straight + 2 + len(self.rollers)
+
     def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
         """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
         return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
@@ -137,8 +143,7 @@ class SolidModel(PlacedContacts):
         compliance = np.zeros((count, count))
         compliance[:first, :first] = self.disc_compliance
         compliance[first:, first:] = self.race_compliance
-        straight = 4 + len(rollers)
-        motions = np.zeros((count, straight if self.widths.even else straight + 2 + len(rollers)))
+        motions = np.zeros((count, self.motion_count))
         gap = np.zeros(count)
         centre = self.disc_pose(pose).centre
         of_rollers: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}

@@ -14,16 +14,21 @@ from ltca.drive.parts import CrankSupport, Drive, Preload
 from ltca.laws.bearing_pair import RollingRow, SideLaw, facing_of
 
 
-def crank_stiffness(drive: Drive) -> FloatArray | None:
-    """Return the stiffness of a crank at its journals, N/mm, preloaded bearings carrying on both sides; None of rigid cranks."""
+def crank_flexibility(drive: Drive) -> FloatArray | None:
+    """Return the flexibility of a crank at its journals, mm/N, both sides of preloaded bearings carrying; None of rigid ones."""
     support = drive.crank.support
     if support is None:
         return None
     modulus = drive.materials.crankshaft.youngs_modulus
     planes, slopes = journals(drive)
     springs = crank_springs(drive)
-    yields = shaft_flexibility(planes, support.positions, springs, support.diameter, modulus, slopes)
-    return np.asarray(np.linalg.inv(yields))
+    return shaft_flexibility(planes, support.positions, springs, support.diameter, modulus, slopes)
+
+
+def crank_stiffness(drive: Drive) -> FloatArray | None:
+    """Return the inverse of `crank_flexibility`, N/mm."""
+    yields = crank_flexibility(drive)
+    return None if yields is None else np.asarray(np.linalg.inv(yields))
 
 
 def journals(drive: Drive) -> tuple[Sequence[float], Sequence[float]]:

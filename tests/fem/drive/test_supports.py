@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
 import pytest
+from plane_joint import compared, plane_joint
 
 from fem.drive.supports import Supports
 from fem.options import SolutionOptions
 from fem.reducer.solution import solve_reducer
-from ltca.analysis.engines import PlaneStrain
-from ltca.analysis.loaded_analysis import analyse
-from ltca.drive.units.quantities import ARCSEC
-from ltca.reading.changes import with_fields
-from ltca.reading.drive_file import load_drive
+from ltca.commands.program import main
+from ltca.drive.deviations import OneDisc, ProfileErrors
+from ltca.errors import ConvergenceError
+from ltca.reading.writing import drive_text
 
 ANGLE = 0.5
 LONG = {"pin_shaft.beam": {"tip": "tied-clamped", "span": 200.0, "diameter": 8.0}}
 """Slender shaft pins between two flanges, mm: shear is 1e-3 of their bending."""
-
-
-def joint(**more):
-    """The shipped joint in the plane: rollers as long as the disc, no profiles."""
-    drive = load_drive("robot-joint").cases["nominal"]
-    plain = {"crank_bearing.roller_length": drive.disc.thickness}
-    for table in ("crank_bearing.roller_profile", "pin_wheel.pin_profile"):
-        plain |= {f"{table}.{name}": 0.0 for name in ("crown_drop", "logarithmic_factor")}
-        plain |= {f"{table}.{name}": 0.0 for name in ("end_relief_length", "end_relief_depth")}
-    return with_fields(drive, plain | more)
 
 
 def shaft_moved(drive, force):
@@ -55,7 +46,7 @@ def test_flexibility_is_symmetric_and_stores_energy(table):
         },
         "wheel": {"pin_wheel.support_stiffness": 2e5},
     }[table]
-    found = Supports.of_drive(joint(**changes))
+    found = Supports.of_drive(plane_joint(**changes))
     for flexibility in (found.wheel, found.shaft):
         if flexibility is not None:
             np.testing.assert_allclose(flexibility, flexibility.T, atol=1e-14 * np.abs(flexibility).max())
@@ -64,7 +55,7 @@ def test_flexibility_is_symmetric_and_stores_energy(table):
 
 
 def test_springs_yield_alone():
-    drive = joint()
+    drive = plane_joint()
     force = np.zeros((2, drive.number_of_holes), dtype=complex)
     force[1, 3] = 30.0 - 40.0j
     np.testing.assert_allclose(shaft_moved(drive, force), force / drive.pin_shaft.stiffness, rtol=1e-13)
@@ -75,7 +66,7 @@ def test_a_floating_flange_carries_what_does_not_move_it(pressed, carried):
     """Equal forces on all pins, one way or around, take the flange along: no slope at the tip, F a³(4L − 3a)/12EIL. Outward ones
     balance on it, and tips stand still: F a³(L − a)³/3EIL³. A disc is 8 mm thick on 200 mm.
     """
-    drive = joint(**LONG)
+    drive = plane_joint(**LONG)
     pins = np.exp(2j * pi * np.arange(drive.number_of_holes) / drive.number_of_holes)
     direction = {"one way": np.exp(0.3j) * np.ones(pins.size), "around": 1j * pins, "outward": pins}[pressed]
     force = np.zeros((2, pins.size), dtype=complex)
@@ -91,11 +82,11 @@ def test_a_floating_flange_carries_what_does_not_move_it(pressed, carried):
 
 def test_posts_hold_the_flange_by_themselves():
     """Rigid ones: tips stand still whatever presses; thin ones: as without."""
-    force = np.zeros((2, joint().number_of_holes), dtype=complex)
+    force = np.zeros((2, plane_joint().number_of_holes), dtype=complex)
     force[:, 2] = 1.0 + 2.0j
     posts, rigid = {"number": 4, "radius": 30.0, "size": 8.0}, {"materials.carrier.youngs_modulus": 1e13}
     free, held, thin = (
-        shaft_moved(joint(**LONG, **more), force)
+        shaft_moved(plane_joint(**LONG, **more), force)
         for more in (
             {},
             {"carrier.posts": posts, **rigid},
@@ -108,7 +99,7 @@ def test_posts_hold_the_flange_by_themselves():
 
 
 def test_the_bearing_of_the_wheel_moves_all_pins_alike():
-    drive = joint(**{"pin_wheel.support_stiffness": 2e5})
+    drive = plane_joint(**{"pin_wheel.support_stiffness": 2e5})
     pins = drive.pin_wheel.number_of_pins
     rng = np.random.default_rng(1)
     force = rng.normal(size=(2, pins)) + 1j * rng.normal(size=(2, pins))
@@ -120,7 +111,7 @@ def test_the_bearing_of_the_wheel_moves_all_pins_alike():
 def test_a_crank_moves_on_its_bearings():
     """A rigid shaft on two springs, by levers."""
     support = {"diameter": 12.0, "positions": (-20.0, 20.0), "stiffness": (2e5, 3e5)}
-    drive = joint(**{"crank.support": support, "materials.crankshaft.youngs_modulus": 1e13})
+    drive = plane_joint(**{"crank.support": support, "materials.crankshaft.youngs_modulus": 1e13})
     far = (np.array(drive.disc.disc_planes) + 20.0) / 40.0
     near = 1.0 - far
     force = np.array([[10.0 + 5.0j], [-3.0 + 1.0j]])
@@ -153,20 +144,11 @@ CLAMPED = {"pin_shaft.beam": {"tip": "tied-clamped"}}
     ],
     ids=["tied", "free", "wheel pins", "posts", "main bearing", "crank"],
 )
-def test_the_ltca_with_the_same_supports_says_the_same(more, tmp_path, monkeypatch):
+def test_the_ltca_with_the_same_supports_says_the_same(more):
     """0.5 % of the largest load of a kind, 0.5″, 0.002 of the shares: full finite elements took springs in the place of beams."""
-    drive = joint(**more)
-    full = solve_reducer(drive, ANGLE, SolutionOptions(size=2.0))
-    own = analyse(drive, np.array([ANGLE]), engine=PlaneStrain())
-    for disc, other in zip(full.discs, own.discs, strict=True):
-        found, answer = disc.contacts, other.full.response
-        for load, expected in (
-            (found.pin_load, answer.pin_load),
-            (found.roller_load, answer.rollers.outer_load),
-            (found.pin_shaft_load, answer.hole_load),
-        ):
-            assert np.max(np.abs(load - expected[0])) < 5e-3 * np.max(load)
-    assert ARCSEC * abs(full.transmission_error - float(own.transmission_error[0])) < 0.5
+    full, own, load, turned = compared(plane_joint(**more), ANGLE, 2.0)
+    assert load < 5e-3
+    assert turned < 0.5
     np.testing.assert_allclose(full.torque_share, own.torque_share[0], atol=2e-3)
 
 
@@ -175,8 +157,36 @@ def test_beams_were_refused_by_full_finite_elements():
     """And springs in their place let the discs share the torque alike; coarse meshes are enough to see it. A carrier that twists
     turns the output alone, by T/k_T.
     """
-    drive = joint(**CLAMPED, **{"carrier.stiffness_torsion": 2e8})
+    drive = plane_joint(**CLAMPED, **{"carrier.stiffness_torsion": 2e8})
     full = solve_reducer(drive, ANGLE, SolutionOptions(size=6.0))
     assert full.torque_share[0] == pytest.approx(0.606, abs=0.01)
     without = abs(drive.output_per_wheel_angle * full.wheel_angle)
     assert abs(full.transmission_error) - without == pytest.approx(drive.load.torque / 2e8, rel=1e-9)
+
+
+DECK = {
+    "ring": {"inner_radius": 60.5, "outer_radius": 72.5, "width": 30.0},
+    "pin_wheel.beam": {"ends": "clamped"},
+    "pin_shaft.beam": {"tip": "free"},
+    "pin_wheel.support_stiffness": 2e5,
+    "crank.support": {"diameter": 12.0, "positions": (-15.0, 15.0), "stiffness": (2e5, 3e5)},
+}
+
+
+@pytest.mark.parametrize("field", DECK)
+def test_the_deck_for_calculix_refuses_what_it_does_not_hold(field, tmp_path, capsys):
+    path = tmp_path / "joint.toml"
+    path.write_text(drive_text(plane_joint(**{field: DECK[field]})), encoding="utf-8")
+    assert main(["fem", str(path), "--angle", "0.5", "--export", "calculix", "--out", str(tmp_path / "out")]) == 2
+    assert f"{field}: must be left out for --export calculix" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.slow
+def test_a_disc_that_rests_anywhere_is_refused_with_its_number(paper_cases):
+    """Its flank is 0.1 mm short all around, and the other one carries all of the torque."""
+    relieved = OneDisc(profile_errors=ProfileErrors(orders=(0,), cosine=(-0.1,)))
+    drive = paper_cases["CS-1"]
+    drive = replace(drive, disc=replace(drive.disc, number_of_discs=2, of=(OneDisc(), relieved)))
+    with pytest.raises(ConvergenceError, match="disc 1 carries less than"):
+        solve_reducer(drive, ANGLE, SolutionOptions(size=6.0))

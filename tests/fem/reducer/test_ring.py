@@ -6,50 +6,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plane_joint import compared, plane_joint
 
 from fem.body.pin_ring import seat_flexibility
-from fem.options import SolutionOptions
-from fem.reducer.solution import solve_reducer
 from fem.reducer.solution_files import build_dataset, summarise
 from ltca.analysis.engines import PlaneStrain
 from ltca.analysis.loaded_analysis import analyse
-from ltca.commands.program import main
 from ltca.compliance.ring import ring_flexibility
 from ltca.drive.single_discs import single_discs
-from ltca.drive.units.quantities import ARCSEC
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
-from ltca.reading.writing import drive_text
 
 ANGLE = 0.5
 RING = {"inner_radius": 60.5, "outer_radius": 72.5, "width": 30.0, "model": "fe"}
 
 
 def joint(discs):
-    """The shipped joint, which `fe` has coefficients of, with an elastic ring; lengths as plane strain has them."""
-    drive = load_drive("robot-joint").cases["nominal"]
-    plain = {"crank_bearing.roller_length": drive.disc.thickness, "ring": RING}
-    for table in ("crank_bearing.roller_profile", "pin_wheel.pin_profile"):
-        plain |= {f"{table}.{name}": 0.0 for name in ("crown_drop", "logarithmic_factor")}
-        plain |= {f"{table}.{name}": 0.0 for name in ("end_relief_length", "end_relief_depth")}
-    return with_fields(drive if discs == 2 else single_discs(drive)[0], plain)
-
-
-def compared(drive, size):
-    """Largest difference of a load, of the largest of its kind, and of the output, ″; largest pin load with a rigid ring."""
-    full = solve_reducer(drive, ANGLE, SolutionOptions(size=size))
-    own = analyse(drive, np.array([ANGLE]), engine=PlaneStrain())
-    loads = []
-    for disc, other in zip(full.discs, own.discs, strict=True):
-        found, answer = disc.contacts, other.full.response
-        for load, expected in (
-            (found.pin_load, answer.pin_load),
-            (found.roller_load, answer.rollers.outer_load),
-            (found.pin_shaft_load, answer.hole_load),
-        ):
-            loads.append(float(np.max(np.abs(load - expected[0])) / np.max(load)))
-    turned = ARCSEC * abs(full.transmission_error - float(own.transmission_error[0]))
-    return full, own, max(loads), turned
+    """The shipped joint in the plane, which `fe` has coefficients of, with an elastic ring."""
+    drive = plane_joint(ring=RING)
+    return drive if discs == 2 else single_discs(drive)[0]
 
 
 @pytest.fixture(autouse=True)
@@ -63,7 +38,7 @@ def own_cache(tmp_path, monkeypatch):
 def test_one_disc_on_an_elastic_ring():
     """1 % of load and 0.5″; on two elements for a half-width 0.5 % and 0.1″, where without a ring 0.2 % and 0.1″ are left."""
     drive = joint(1)
-    full, own, load, turned = compared(drive, 4.0)
+    full, own, load, turned = compared(drive, ANGLE, 4.0)
     assert load < 0.01
     assert turned < 0.5
     rigid = analyse(replace(drive, ring=None), np.array([ANGLE]), engine=PlaneStrain())
@@ -78,7 +53,7 @@ def test_one_disc_on_an_elastic_ring():
 @pytest.mark.nightly
 def test_two_discs_share_the_ring():
     """The forces of both hold the seats: as for one disc."""
-    full, own, load, turned = compared(joint(2), 4.0)
+    full, own, load, turned = compared(joint(2), ANGLE, 4.0)
     assert load < 0.01
     assert turned < 0.5
     first, second = (disc.pose.wheel_pin_displacements for disc in full.discs)
@@ -103,11 +78,3 @@ def test_the_ring_of_the_analysis_is_that_of_the_full_solution(more):
     np.testing.assert_allclose(
         own.reshape(other.shape), other, atol=1e-4 * np.max(other)
     )  # equal seats on a mesh: 6e-5
-
-
-def test_calculix_is_refused_with_a_ring(tmp_path, capsys):
-    path = tmp_path / "joint.toml"
-    path.write_text(drive_text(joint(1)), encoding="utf-8")
-    assert main(["fem", str(path), "--angle", "0.5", "--export", "calculix", "--out", str(tmp_path / "out")]) == 2
-    assert "ring: must be left out for --export calculix" in capsys.readouterr().err
-    assert not (tmp_path / "out").exists()

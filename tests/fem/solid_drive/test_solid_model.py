@@ -25,6 +25,7 @@ def test_motions_are_those_of_disc_wheel_and_candidate_rollers(even, motions):
         disc_pose=lambda _: SimpleNamespace(centre=4.0 + 0.0j),
         pairs=(),
     )
+    model.motion_count = SolidModel.motion_count.fget(model)
     problem = SolidModel.contact_problem(model, None, [], 300.0)
     assert problem.motions.shape == (0, motions)
     np.testing.assert_array_equal(problem.external, [0.0, 0.0, 0.0, -300.0, *np.zeros(motions - 4)])
