@@ -66,7 +66,7 @@ def evaluations(function: Callable[[], Equilibrium]) -> tuple[float, float]:
     def counted(self: Linearised, *given: Any, **options: Any) -> None:
         plain(self, *given, **options)
         rows[0] += self.angle.size
-        if self.sliced:
+        if any(self.sliced):
             loaded[0] += int(np.count_nonzero(self.load[:, 0]))
 
     def counted_kernel(self: SlicedLine, load: np.ndarray, effective_radius: np.ndarray) -> Any:

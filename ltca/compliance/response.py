@@ -279,7 +279,7 @@ class Inner:
 
     pose: FloatArray  # where they were found
     place: FloatArray  # of rollers, inward from where they only touch the race, mm; NaN where unknown, (positions, rollers)
-    lean: FloatArray  # along their rays by half the thickness of the disc, mm, alike
+    lean: FloatArray  # along their rays by half the thickness of the disc, mm, (positions, leans, rollers)
     approach: FloatArray | None  # deformations e, mm, (positions, components, contacts); None: the approaches
     shifts: ComplexArray | None  # displacements u of the pins, mm, (positions, rows, pairs)
     near: tuple[FloatArray, ...]  # `SlicedContact.near` of each disc and kind; empty in the plane
@@ -309,9 +309,7 @@ class Inner:
             change = np.concatenate([np.matmul(part, moved[:, :, own])[..., 0] for part, own in rollers], axis=1)
         else:
             change = np.matmul(self.by_pose, moved)[..., 0]
-        place = place + change[..., 0]
-        if change.shape[-1] > 1:
-            lean = lean + change[..., 1]
+        place, lean = place + change[..., 0], lean + change[..., 1:].swapaxes(1, 2)
         if approach is not None and self.approach_by_pose is not None:
             approach = approach + np.matmul(self.approach_by_pose, moved)[..., 0]
         if shifts is not None and self.shifts_by_pose is not None:

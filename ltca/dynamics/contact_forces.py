@@ -176,20 +176,17 @@ def _crank_moments(contacts: Linearised, pushes: Sequence[ComplexArray]) -> Floa
     for number, (disc, push) in enumerate(zip(contacts.discs, pushes, strict=True)):
         bores, cage = disc.bores, disc.geometry.placement.cage_speed
         total += ((bores.lever + cage * bores.displacement)[0].conjugate() * push[0]).imag
-        if disc.tilts is not None:
-            askew = (disc.geometry.lean(disc.pose) - disc.geometry.journal_leans(disc.pose))[0]
-            total += cage * (askew.conjugate() * contacts.bearing_moments(number)[0]).imag
+        askew = (disc.geometry.lean(disc.pose) - disc.geometry.journal_leans(disc.pose))[0]
+        total += cage * (askew.conjugate() * contacts.bearing_moments(number)[0]).imag
     return total
 
 
 def _on_wheel(contacts: Linearised, disc: int, rubbed: FloatArray) -> complex:
     """Force of a disc on the wheel, with the friction of its pins, N; in slices normals turn along the width."""
     each, pins = contacts.discs[disc], slice(0, contacts.system.pins)
-    load, *moment = contacts.pin_loads(disc)[0][:, pins]
+    load = contacts.pin_loads(disc)[0][:, pins]
+    force = sum(one @ on_pins[0][:, DISC_PLACE] for one, (on_pins, _) in zip(load, each.gradients, strict=True))
     gradient = each.flank.gradient[0]
-    force = load @ gradient[:, DISC_PLACE]
-    if each.tilts is not None:
-        force = force + (moment[0] * contacts.half) @ each.tilts[0].gradient[0][:, DISC_PLACE]
     along = gradient[:, Y] - 1j * gradient[:, X]
     return complex(force[0], force[1]) + complex(rubbed @ along)
 
@@ -198,9 +195,8 @@ def _slip(contacts: Linearised, disc: int) -> FloatArray:
     """Slip of wheel pins, then shaft pins, by the pose where each is loaded, off the middle in slices, shape (pairs, k)."""
     each, pins = contacts.discs[disc], contacts.system.pins
     slip = Slip.of_disc(each.geometry, contacts.angle, each.pose, each).by_pose[0]
-    if each.tilts is not None:
-        coordinates = each.geometry.coordinates_of(each.pose)
-        load, moment = contacts.pin_loads(disc)[0]
+    coordinates, (load, *moments) = each.geometry.coordinates_of(each.pose), contacts.pin_loads(disc)[0]
+    for moment in moments:
         height = np.divide(moment * contacts.half, load, out=np.zeros_like(load), where=load > 0.0)
         along = height[:, None] * np.concatenate((each.flank.along[0], each.holes.along[0]))[:, DISC_PLACE]
         slip[:, coordinates.lean_place] += along

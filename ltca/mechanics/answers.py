@@ -54,17 +54,17 @@ def disc_response(at: Linearised, disc: int) -> DiscResponse:
             _, slip, held = at.sticking[disc]
             friction = friction + held
             force += np.einsum("bpj,bp->bj", slip, held)
-    shifts, leans = None, None
+    shifts = leans = None
     if at.shifts_after is not None:
-        shifts = at.shifts_after[:, disc]
-        leans = at.shifts_after[:, system.discs + disc] / at.half if system.components > 1 else None
-    leaning: tuple[Any, ...] = (None, None)
-    if each.tilts is not None:
+        shifts, *leaning_by = at.shifts_after[:, disc :: system.discs].swapaxes(0, 1)
+        leans = next((each / at.half for each in leaning_by), None)
+    leaning: list[Any] = [None, None]
+    for pairs in each.tilts:
         found = at.slices_after(disc)
-        leaning = tuple(
+        leaning = [
             LeaningPairs(tilt=tilt, contact=contact.kept)
-            for tilt, contact in zip(each.tilts, (found[0], found[2]), strict=True)
-        )
+            for tilt, contact in zip(pairs, (found[0], found[2]), strict=True)
+        ]
     return DiscResponse(
         force=force,
         flank=flank,
@@ -115,14 +115,14 @@ def _rollers(at: Linearised, disc: int) -> RollerState:
         outer_load=load[:, 0, bores],
         outer_direction=np.where(carries, each.outward, arm / rest),
     )
-    if each.tilts is None:
-        return state
-    contacts, after = at.slices_after(disc), at.after[:, 1]
-    leaning = LeaningRollers(
-        lean=np.where(carries, at.lean_after[:, own] / at.half, 0.0),
-        inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
-        outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
-        inner=contacts[3].kept,
-        outer=contacts[1].kept,
-    )
-    return replace(state, leaning=leaning)
+    for lean, after in zip(at.lean_after.swapaxes(0, 1), at.after.swapaxes(0, 1)[1:], strict=True):
+        contacts = at.slices_after(disc)
+        leaning = LeaningRollers(
+            lean=np.where(carries, lean[:, own] / at.half, 0.0),
+            inner_tilt=np.where(carries, after[:, races] / at.half, 0.0),
+            outer_tilt=np.where(carries, after[:, bores] / at.half, 0.0),
+            inner=contacts[3].kept,
+            outer=contacts[1].kept,
+        )
+        state = replace(state, leaning=leaning)
+    return state

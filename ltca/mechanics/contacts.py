@@ -27,14 +27,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray, take_positions
-from ltca.compliance import sliced
 from ltca.compliance.coefficients import BodyPlaces
 from ltca.compliance.coupled import BodyFlexibility
 from ltca.compliance.response import ContactLaws, Inner, Start
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins
-from ltca.laws.line_contact import LineContactLaw
+from ltca.laws.all_contacts import PlaneLaws, SlicedLaws
 from ltca.mechanics.displaced_pins import PinMembers
 from ltca.mechanics.elimination import (
     ROUGHLY_SETTLED,
@@ -43,7 +42,7 @@ from ltca.mechanics.elimination import (
     eliminate_rollers,
     loads_of,
 )
-from ltca.mechanics.places import DiscPlaces, Indices, State, beside, mixed, padded, places_of, with_crank
+from ltca.mechanics.places import DiscPlaces, Indices, State, beside, mixed, padded, places_of, reach_of, with_crank
 from ltca.mechanics.pressing import BySlope, Pressing, pressing_of
 
 if TYPE_CHECKING:
@@ -98,8 +97,7 @@ class ContactSystem:
         self.cage_speed = place.cage_speed
         self.plain = not self.deforms and self.components == 1 and model.friction is None
         alike = all(type(laws) is ContactLaws for laws in self.laws)
-        self.law_groups = _law_groups(self) if self.components == 1 and alike else []
-        self.radii = _radii(self)
+        self.every_law = (PlaneLaws, SlicedLaws)[self.coordinates.leans](self.laws, self.of_kind, alike=alike)
 
     @property
     def half(self) -> FloatArray:
@@ -226,8 +224,7 @@ class ContactSystem:
                 place, lean, approach, expected = start.inner.at(pose)
                 shifts = shifts if expected is None else expected
         if place is None or lean is None:
-            unknown = np.full((rows, rollers), np.nan)
-            place, lean = unknown if place is None else place, unknown if lean is None else lean
+            place, lean = np.full((rows, rollers), np.nan), np.full((rows, self.components - 1, rollers), np.nan)
         if share is None:
             share = np.full((rows, rollers), 0.5)
         return State(parameter, place, share, lean, approach, shifts, near)
@@ -297,7 +294,7 @@ class Linearised:
             shifts = leans = None
             if state.shifts is not None:
                 shifts = state.shifts[:, disc]
-                if system.components > 1:
+                if system.coordinates.leans:
                     leans = state.shifts[:, system.discs + disc] / self.half
             parameter = None if state.parameter is None else state.parameter[:, first:last]
             found.append(DiscPlaces(geometry, self.angle, self.pose[:, own], parameter, known, shifts, leans))
@@ -309,55 +306,37 @@ class Linearised:
         shape = (rows, system.components, system.contacts)
         self.overlap, e = np.zeros(shape), state.approach
         self.place, self.share = state.place.copy(), state.share
-        self.lean = np.zeros(self.place.shape) if system.components == 1 else state.lean.copy()
+        self.lean = state.lean.copy()
         given = system.deforms and e is not None
         e = e.copy() if given and e is not None else None
         for disc, at in enumerate(self.discs):
             own = slice(disc * system.rollers, (disc + 1) * system.rollers)
             _, bores, _, races = system.of_kind[disc]
-            place, lean = self.place[:, own], self.lean[:, own]
+            place, lean = self.place[:, own], self.lean[:, :, own]
             unplaced = np.isnan(place)
             if unplaced.any():
                 place = np.where(unplaced, state.share[:, own] * at.total, place)
-            at_race = at_bore = middle = lean
-            if at.tilts is not None:
-                at_race, at_bore = self.half * at.at_race, self.half * at.at_bore
-                middle = 0.5 * (at_race + at_bore)
-                # Moments in both contacts press the same way: a roller leans between race and bore, or little beside.
-                room = 0.5 * (np.abs(at_race - at_bore) + at.room)
-                lean = np.where(np.isnan(lean), middle, np.clip(lean, middle - room, middle + room))
+            # Moments in both contacts press the same way: a roller leans between race and bore, or little beside.
+            middle = 0.5 * (at.at_race + at.at_bore)
+            room = 0.5 * (np.abs(at.at_race - at.at_bore) + at.room[:, None])
+            lean = np.where(np.isnan(lean), middle, np.clip(lean, middle - room, middle + room))
             if e is not None and system.coupled:
-                reach = e[:, 0] + (np.abs(e[:, 1]) if at.tilts is not None else 0.0)
-                loose = (reach[:, bores] <= 0.0) | (reach[:, races] <= 0.0)
-                by = np.where(loose, 0.5 * (e[:, 0, bores] - e[:, 0, races]), 0.0)
-                place = place + by
-                e[:, 0, races] += by
-                e[:, 0, bores] -= by
-                if at.tilts is not None:
-                    by = np.where(loose, 0.5 * (e[:, 1, races] - e[:, 1, bores]), 0.0)
-                    lean = lean + by
-                    e[:, 1, races] -= by
-                    e[:, 1, bores] += by
+                in_bore, on_race = (e[:, :, kind] for kind in (bores, races))
+                loose = (reach_of(in_bore) <= 0.0) | (reach_of(on_race) <= 0.0)
+                by = np.where(loose[:, None], 0.5 * (in_bore - on_race), 0.0)
+                place, lean = place + by[:, 0], lean - by[:, 1:]
+                on_race += by
+                in_bore -= by
             else:
-                in_bore, on_race = at.total - place, place
-                if at.tilts is not None:
-                    in_bore, on_race = in_bore + np.abs(lean - at_bore), on_race + np.abs(at_race - lean)
-                loose = (in_bore <= 0.0) | (on_race <= 0.0)
-                place = np.where(loose, 0.5 * at.total, place)
-                if at.tilts is not None:
-                    lean = np.where(loose, middle, lean)
+                in_bore = at.total - place + np.abs(lean - at.at_bore).sum(axis=1)
+                loose = (in_bore <= 0.0) | (place + np.abs(at.at_race - lean).sum(axis=1) <= 0.0)
+                place, lean = np.where(loose, 0.5 * at.total, place), np.where(loose[:, None], middle, lean)
             at.place_rollers(place)
-            self.place[:, own] = place
-            if at.tilts is not None:
-                self.lean[:, own] = lean
-            for kind, values in zip(
-                system.of_kind[disc], (at.flank.approach, at.outer, at.holes.approach, place), strict=True
-            ):
-                self.overlap[:, 0, kind] = values
-            if at.tilts is not None:
-                tilts = (self.half * at.tilts[0].tilt, lean - at_bore, self.half * at.tilts[1].tilt, at_race - lean)
-                for kind, values in zip(system.of_kind[disc], tilts, strict=True):
-                    self.overlap[:, 1, kind] = values
+            self.place[:, own], self.lean[:, :, own] = place, lean
+            approaches = at.flank.approach, at.outer, at.holes.approach, place
+            tilts = at.pin_tilts, lean - at.at_bore, at.hole_tilts, at.at_race - lean
+            for kind, approach, tilt in zip(system.of_kind[disc], approaches, tilts, strict=True):
+                self.overlap[:, 0, kind], self.overlap[:, 1:, kind] = approach, tilt
         if e is None:
             e = self.overlap
             if system.coupled:  # a fair share of a rigid overlap
@@ -375,7 +354,7 @@ class Linearised:
         """Contacts near enough to carry when the bodies yield under others."""
         if not np.isfinite(self.margin):
             return np.ones(self.overlap[:, 0].shape, dtype=bool)
-        reach = self.overlap[:, 0] + (np.abs(self.overlap[:, 1]) if self.system.components > 1 else 0.0)
+        reach = reach_of(self.overlap)
         most = np.max(reach, axis=1, initial=0.0)[:, None]
         return np.asarray((reach > 0.0) | (reach > -self.margin * most))
 
@@ -387,61 +366,10 @@ class Linearised:
 
     def _carry(self, state: State) -> None:
         """Loads of all contacts at their deformations, and their derivatives."""
-        if self.system.components == 1:
-            self._carry_in_plane()
-        else:
-            self._carry_in_slices(state)
-
-    def _carry_in_plane(self) -> None:
-        """Loads and their derivatives in the plane."""
-        system, e = self.system, self.deformation[:, 0]
-        self.load, self.stiffness = np.zeros(self.deformation.shape), np.zeros((1, *e.shape))
-        self.sliced: list[list[SlicedContact]] = []
-        self.law_left = np.zeros(e.shape[0])
-        radius = np.empty(e.shape)
-        radius[...] = system.radii
-        for at, kinds in zip(self.discs, system.of_kind, strict=True):
-            radius[:, kinds[0]] = at.flank.effective_radius
-        for law, contacts in system.law_groups:
-            load, stiffness = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
-            self.load[:, 0, contacts], self.stiffness[0][:, contacts] = load, stiffness
-        if system.law_groups:
-            return
-        # Laws that know where on the flank a pin touches are asked for closed contacts alone.
-        for at, laws, kinds in zip(self.discs, system.laws, system.of_kind, strict=True):
-            for law, kind in zip(laws.placed(at.flank), kinds, strict=True):
-                closed = e[:, kind] > 0.0
-                found = law.take(closed.shape, closed).load_and_stiffness(e[:, kind][closed], radius[:, kind][closed])
-                self.load[:, 0, kind][closed], self.stiffness[0][:, kind][closed] = found
-
-    def _carry_in_slices(self, state: State) -> None:
-        """Loads, moments and their derivatives in slices."""
-        system, e = self.system, self.deformation
-        self.load = np.zeros(e.shape)
-        self.stiffness = np.zeros((3, e.shape[0], e.shape[2]))
-        self.sliced = []
-        self.law_left = np.zeros(e.shape[0])
-        exactness = sliced.ROUGH if self.roughly else sliced.EXACT
-        for disc, (at, laws) in enumerate(zip(self.discs, system.laws, strict=True)):
-            radii = at.flank.effective_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
-            found = []
-            here = laws.placed(at.flank)
-            for number, (kind, law, radius) in enumerate(zip(system.of_kind[disc], here, radii, strict=True)):
-                pressed = e[:, 0, kind]
-                near = state.near[4 * disc + number] if state.near else None
-                one = law.respond(
-                    pressed, e[:, 1, kind] / self.half, np.broadcast_to(radius, pressed.shape), near, exactness
-                )
-                self.load[:, 0, kind], self.load[:, 1, kind] = one.load, one.moment / self.half
-                for values, mine in zip(
-                    self.stiffness,
-                    (one.by_approach, one.by_tilt / self.half, one.moment_by_tilt / self.half**2),
-                    strict=True,
-                ):
-                    values[:, kind] = mine
-                self.law_left = np.maximum(self.law_left, one.left.max(axis=1, initial=0.0))
-                found.append(one)
-            self.sliced.append(found)
+        laws = self.system.every_law
+        self.load, self.stiffness, self.law_left, self.sliced = laws.carried(
+            self.discs, self.deformation, self.half, state.near, roughly=self.roughly
+        )
 
     def _choose(self) -> None:
         """Choose the contacts of the linear system: those that carry, and open ones that others may press."""
@@ -622,9 +550,10 @@ class Linearised:
         return _by_crank(self.corrected_load[:, 0, bores] * at.outward, at.bores.arm.shape[1])
 
     def bearing_moments(self, disc: int) -> ComplexArray:
-        """Return the generalised force of every crank bearing on the lean of a disc, N·mm, shape (positions, cranks)."""
+        """Return the generalised force of crank bearings on the lean of a disc, none in the plane, N·mm, (positions, cranks)."""
         at, bores = self.discs[disc], self.system.of_kind[disc][1]
-        return _by_crank(self.half * self.corrected_load[:, 1, bores] * at.rays.direction, at.bores.arm.shape[1])
+        moments = self.half * self.corrected_load[:, 1:, bores].sum(axis=1)
+        return _by_crank(moments * at.rays.direction, at.bores.arm.shape[1])
 
     @cached_property
     def shifts(self) -> ComplexArray | None:
@@ -632,8 +561,7 @@ class Linearised:
         if self.system.model.pins is None:
             return None
         each = [at.shifts for at in self.discs]
-        if self.system.components > 1:
-            each += [None if at.leans is None else at.leans * self.half for at in self.discs]
+        each += [None if at.leans is None else at.leans * self.half for at in self.discs]
         return np.stack([one for one in each if one is not None], axis=1)
 
     def body_places(self, disc: int) -> BodyPlaces:
@@ -647,10 +575,6 @@ class Linearised:
         return BodyPlaces.on_walls(
             at.flank.parameter, on_flank, in_bore, float(place.bore_radius), in_hole, place.cranks
         )
-
-    @property
-    def _thick(self) -> FloatArray:
-        return self.half[..., None] if self.half.ndim else self.half
 
     def settled(self, roughly: bool) -> NDArray[np.bool_]:
         """Positions whose inner unknowns are close enough for a step of the pose, or for an answer."""
@@ -690,7 +614,8 @@ class Linearised:
         place, lean = self.place_after, self.lean_after
         if fraction is not None and not np.all(fraction == 1.0):
             part = fraction[:, None]
-            place, lean = self.place + part * (place - self.place), self.lean + part * (lean - self.lean)
+            place = self.place + part * (place - self.place)
+            lean = self.lean + part[..., None] * (lean - self.lean)
             if approach is not None:
                 approach = self.deformation + part[..., None] * (approach - self.deformation)
         if fraction is not None and shifts is not None and self.shifts is not None:
@@ -718,13 +643,13 @@ class Linearised:
     @cached_property
     def lean_after(self) -> FloatArray:
         """Leans of the rollers after the correction, by half the thickness of the disc, mm."""
-        return self.lean + self.of_all_rollers(self.dx)[..., 1] if self.system.components > 1 else self.lean
+        return self.lean + self.of_all_rollers(self.dx)[..., 1:].swapaxes(1, 2)
 
     def slices_after(self, disc: int) -> list[SlicedContact]:
-        """Return the contacts of a disc in slices, by kind, moved along their slopes by the correction."""
+        """Return the contacts of a disc in slices, by kind, moved along their slopes by the correction; none in the plane."""
         if disc not in self._moved_slices:
             found = []
-            for one, kind in zip(self.sliced[disc], self.system.of_kind[disc], strict=True):
+            for one, kind in zip(self.sliced[disc], self.system.of_kind[disc], strict=False):
                 change = self.after[:, :, kind] - self.deformation[:, :, kind]
                 found.append(
                     one.moved(change[:, 0], change[:, 1] / self.half, self.corrected_load[:, :, kind], self.half)
@@ -803,8 +728,7 @@ class Linearised:
         found = np.zeros(self.angle.size, dtype=bool)
         if not self.system.deforms or not np.isfinite(self.margin):
             return found
-        reach = self.overlap + self.moved_by_pins
-        reach = reach[:, 0] + np.abs(reach[:, 1:]).sum(axis=1)
+        reach = reach_of(self.overlap + self.moved_by_pins)
         for disc, (kinds, yielding) in enumerate(zip(self.system.of_kind, self.yielding, strict=True)):
             pressed = reach[:, kinds[0].start : kinds[2].stop] > (yielding[0] if yielding else 0.0)
             for some, kind in zip(self.chosen[disc][:3], kinds[:3], strict=True):
@@ -864,37 +788,6 @@ class Linearised:
             shifts_by_pose=shifts,
             columns=columns,
         )
-
-
-def _law_groups(system: ContactSystem) -> list[tuple[Any, slice | Indices]]:
-    """Laws of all discs in the plane with their contacts, those of one table as one law."""
-    groups: list[tuple[Any, slice | Indices]] = []
-    lines: dict[int, list[tuple[LineContactLaw, slice]]] = {}
-    for laws, kinds in zip(system.laws, system.of_kind, strict=True):
-        for law, kind in zip(laws.laws, kinds, strict=True):
-            if type(law) is LineContactLaw:
-                lines.setdefault(id(law.table), []).append((law, kind))
-            elif kind.start < kind.stop:
-                groups.append((law, kind))
-    for same in lines.values():
-        counts = [kind.stop - kind.start for _, kind in same]
-        length, modulus = (
-            np.repeat([getattr(law, name) for law, _ in same], counts) for name in ("length", "contact_modulus")
-        )
-        contacts = np.concatenate([np.arange(kind.start, kind.stop) for _, kind in same])
-        groups.append((LineContactLaw(length, modulus, same[0][0].table), contacts))
-    return groups
-
-
-def _radii(system: ContactSystem) -> FloatArray:
-    """Effective radii of all contacts, mm, shape (1 or positions, contacts); 1 of wheel pins."""
-    every = [(laws.outer_radius, laws.hole_radius, laws.inner_radius) for laws in system.laws]
-    rows = max(np.atleast_2d(each).shape[0] for radii in every for each in radii)
-    found = np.ones((rows, system.contacts))
-    for kinds, radii in zip(system.of_kind, every, strict=True):
-        for kind, radius in zip(kinds[1:], radii, strict=True):
-            found[:, kind] = radius
-    return found
 
 
 def _by_crank(values: NDArray[Any], cranks: int) -> NDArray[Any]:

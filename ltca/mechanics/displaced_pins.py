@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import weakref
 from itertools import product
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from ltca.geometry.pair_motion import dot
 from ltca.geometry.rotation import unit
 from ltca.mechanics.places import Indices
 
+Directions: TypeAlias = dict[tuple[int, int], ComplexArray]
+"""By component of a contact and kind of displacement: of pins, 0, and leans of theirs, 1."""
+
 
 class PinMembers:
     """Wheel pins and shaft pins of all discs under their contacts; wheel pins are displaced in the frame of the turning wheel."""
@@ -24,7 +27,10 @@ class PinMembers:
         self.at, system = weakref.proxy(at), at.system
         place, pins = system.geometries[0].placement, system.pins
         turned = unit(place.wheel_rotation(at.angle) + at.pose[:, WHEEL_ANGLE]).conjugate()[:, None]
-        self.normal, self.pressing, self.leaning, self.turning, self.along = [], [], [], [], []
+        self.along: list[ComplexArray] = []
+        # How displacements of pins and their leans change components, by disc; how these load them, with friction.
+        self.by: list[list[list[ComplexArray]]] = []
+        self.onto: list[list[list[ComplexArray]]] = []
         self._chosen()
         for disc, each in enumerate(at.discs):
             frame = np.where(np.arange(pins + system.holes) < pins, turned, 1.0)
@@ -33,47 +39,44 @@ class PinMembers:
                 both = np.concatenate((first, second), axis=1)[..., DISC_PLACE]
                 return np.asarray(-(both[..., 0] + 1j * both[..., 1]) * frame)  # as the disc moves the other way
 
-            normal = seen(each.flank.gradient, each.holes.gradient)
             along = seen(each.flank.along, each.holes.along)
-            pressing = normal + at.rubs[disc] * along if at.rubs else normal
+            normal, *turning = (seen(*gradients) for gradients in each.gradients)
+            rubs = (at.rubs[disc], at.rubs_leaning[disc]) if at.rubs else ()
+            pressing, leaning = (normal + rub * along for rub in rubs) if rubs else (normal, normal)
             self.along.append(along)
-            self.normal.append(normal)
-            self.pressing.append(pressing)
-            self.leaning.append(normal + at.rubs_leaning[disc] * along if at.rubs else normal)
-            if each.tilts is not None:
-                self.turning.append(at.half * seen(each.tilts[0].gradient, each.tilts[1].gradient))
+            # Displacements change approaches and, as normals turn along the width, tilts; leans change tilts alone.
+            self.by.append([[normal, *turning], *([normal] for _ in turning)])
+            self.onto.append([[pressing, *turning], *([leaning] for _ in turning)])
 
     def forces(self, load: FloatArray, aside: FloatArray | None = None, *, changes: bool = False) -> ComplexArray:
         """Return Lᵀ f of loads, or of `changes` of loads without friction that sticks, shape (positions, rows, pairs), and of
         forces `aside` of the normals, shape (positions, components, discs, pairs).
         """
-        system, forces, moments = self.at.system, [], []
+        system = self.at.system
+        found = np.zeros((load.shape[0], system.components, system.discs, system.pins + system.holes), dtype=complex)
         for disc, kinds in enumerate(system.of_kind):
             pressed = np.concatenate((load[..., kinds[0]], load[..., kinds[2]]), axis=-1)
-            force = pressed[:, 0] * self.pressing[disc]
-            if self.turning:
-                force = force + pressed[:, 1] * self.turning[disc]
-                moment = pressed[:, 1] * self.leaning[disc]
-                moments.append(moment if aside is None else moment + aside[:, 1, disc] * self.along[disc])
-            if aside is not None:
-                force = force + aside[:, 0, disc] * self.along[disc]
+            for displaced, onto in enumerate(self.onto[disc]):
+                force = found[:, displaced, disc]
+                for component, direction in enumerate(onto, displaced):
+                    force += pressed[:, component] * direction
+                if aside is not None:
+                    force += aside[:, displaced, disc] * self.along[disc]
             if self.at.sticking and not changes:
-                force = force + self.at.sticking[disc][2] * self.along[disc]
-            forces.append(force)
-        return np.stack(forces + moments, axis=1)
+                found[:, 0, disc] += self.at.sticking[disc][2] * self.along[disc]
+        return found.reshape(load.shape[0], -1, found.shape[-1])
 
     def approaches(self, shifts: ComplexArray) -> FloatArray:
         """Return N u of all contacts, shape (positions, components, contacts)."""
         system = self.at.system
         found = np.zeros((shifts.shape[0], system.components, system.contacts))
         for disc, (pins, _, holes, _) in enumerate(system.of_kind):
-            each = [dot(self.normal[disc], shifts[:, disc])]
-            if self.turning:
-                each.append(
-                    dot(self.turning[disc], shifts[:, disc]) + dot(self.normal[disc], shifts[:, system.discs + disc])
-                )
-            for component, values in enumerate(each):
-                found[:, component, pins], found[:, component, holes] = np.split(values, (system.pins,), axis=1)
+            for displaced, by in enumerate(self.by[disc]):
+                moved = shifts[:, displaced * system.discs + disc]
+                for component, direction in enumerate(by, displaced):
+                    values = dot(direction, moved)
+                    found[:, component, pins] += values[:, : system.pins]
+                    found[:, component, holes] += values[:, system.pins :]
         return found
 
     def unsettled(self, shifts: ComplexArray) -> ComplexArray:
@@ -86,9 +89,7 @@ class PinMembers:
         found, at, system = [], self.at, self.at.system
         for disc, (along, own) in enumerate(zip(self.along, at.chosen, strict=True)):
             some = np.concatenate((own[0], system.pins + own[2]), axis=1)
-            each = [dot(along, self._left[:, disc])]
-            if self.turning:
-                each.append(dot(along, self._left[:, system.discs + disc]))
+            each = [dot(along, left) for left in self._left[:, disc :: system.discs].swapaxes(0, 1)]
             found.append(np.stack([one[at.row, some] for one in each], axis=1))
         return np.concatenate(found, axis=2)
 
@@ -131,7 +132,7 @@ class PinMembers:
                 bend = sign * motion.bending[at.row, some]
                 load = at.load[:, :, system.of_kind[disc][kind]]
                 parts = [bend * load[:, component][at.row, some] for component in range(system.components)]
-                each.append(np.stack([*parts, np.zeros(bend.shape)]) if system.components > 1 else np.stack(parts))
+                each.append(np.stack([*parts, *(np.zeros(bend.shape) for _ in parts[1:])]))
                 if kind == 0:
                     for component, part in enumerate(load.swapaxes(0, 1)):
                         turning = turn[:, component, first:last]
@@ -144,11 +145,12 @@ class PinMembers:
                 by_place[:, first:last, own] = along
                 if at.by_crank:
                     by_place[:, first:last, -1] = np.matmul(along, of_disc.nominal)[..., 0]
-                if system.components > 1:
-                    by_lean = slip[:, 1]
-                    by_lean[:, first:last, own[system.one.lean_place]] = at._thick * along[..., DISC_PLACE]
+                for by_lean in slip.swapaxes(0, 1)[1:]:
+                    by_lean[:, first:last, own[system.one.lean_place]] = at.half[..., None] * along[..., DISC_PLACE]
                     if kind == 0 and system.one.wheel_leans:
-                        by_lean[:, first:last, own[system.one.wheel_lean_place]] = -at._thick * along[..., DISC_PLACE]
+                        by_lean[:, first:last, own[system.one.wheel_lean_place]] = (
+                            -at.half[..., None] * along[..., DISC_PLACE]
+                        )
         return np.concatenate(each, axis=2), slip, turn
 
     def add_flexibility(self, whole: FloatArray) -> None:
@@ -166,14 +168,17 @@ class PinMembers:
             first, second = (np.stack(each, axis=1)[row, self.disc, self.pair] for each in (values, along))
             return np.concatenate((first, second), axis=1)
 
-        none = np.zeros(pair.shape, dtype=complex)
-        normal, pressing = chosen(self.normal, self.along), chosen(self.pressing, self.along)
-        # By component and kind of displacement: shifts, and leans in slices.
-        by: list[list[ComplexArray]] = [[normal]]
-        onto: list[list[ComplexArray]] = [[pressing]]
-        if self.turning:
-            turning = chosen(self.turning, [np.zeros_like(one) for one in self.turning])
-            by, onto = [[normal, none], [turning, normal]], [[pressing, none], [turning, pressing]]
+        def every(by_disc: list[list[list[ComplexArray]]]) -> Directions:
+            return {
+                (component, displaced): chosen(
+                    [each[displaced][component - displaced] for each in by_disc],
+                    self.along if component == displaced else [np.zeros_like(one) for one in self.along],
+                )
+                for displaced in range(system.components)
+                for component in range(displaced, system.components)
+            }
+
+        by, onto = every(self.by), every(self.onto)
         if held.beams.any():
             self._add_beams(whole, place, by, onto)
         if held.ring is None:
@@ -183,18 +188,15 @@ class PinMembers:
         on_wheel = pair < seats
         seat = np.minimum(pair, seats - 1)
         behind = (row[..., None],) if held.ring.ndim > 4 else ()
-        for a, mine in enumerate(by):
-            for b, theirs in enumerate(onto):
-                total = np.zeros((*pair.shape, pair.shape[1]))
-                for x, left in enumerate((mine[0].real, mine[0].imag)):
-                    for y, right in enumerate((theirs[0].real, theirs[0].imag)):
-                        moved = held.ring[(*behind, seat[:, :, None], x, seat[:, None, :], y)]
-                        total += moved * (left * on_wheel)[:, :, None] * (right * on_wheel)[:, None, :]
-                whole[:, a, first, b, second] += total
+        for a, b in np.ndindex(system.components, system.components):
+            total, mine, theirs = np.zeros((*pair.shape, pair.shape[1])), by[a, 0], onto[b, 0]
+            for x, left in enumerate((mine.real, mine.imag)):
+                for y, right in enumerate((theirs.real, theirs.imag)):
+                    moved = held.ring[(*behind, seat[:, :, None], x, seat[:, None, :], y)]
+                    total += moved * (left * on_wheel)[:, :, None] * (right * on_wheel)[:, None, :]
+            whole[:, a, first, b, second] += total
 
-    def _add_beams(
-        self, whole: FloatArray, place: Indices, by: list[list[ComplexArray]], onto: list[list[ComplexArray]]
-    ) -> None:
+    def _add_beams(self, whole: FloatArray, place: Indices, by: Directions, onto: Directions) -> None:
         """Add the approaches of contacts on a pin by loads on the same pin, through its beam."""
         discs, beams, count = self.at.system.discs, self.at.system.model.pins.beams, self.count
         number = np.full((self.at.angle.size, discs, beams.shape[-3]), -1)
@@ -204,14 +206,13 @@ class PinMembers:
             row, mine = np.nonzero(partner >= 0)
             other, pin = partner[row, mine], self.pair[row, mine]
             behind = (row,) if beams.ndim > 3 else ()
-            for i, j in np.ndindex(len(by[0]), len(by[0])):
+            for ((a, i), left), ((b, j), right) in product(by.items(), onto.items()):
                 beam = beams[(*behind, pin, self.disc[mine] + i * discs, disc + j * discs)]
                 if not beam.any():
                     continue
-                for (a, left), (b, right) in product(enumerate(by), enumerate(onto)):
-                    for first, second in product((mine, count + mine), (other, count + other)):
-                        moved = beam * dot(left[i][row, first], right[j][row, second])
-                        whole[row, a, place[first], b, place[second]] += moved
+                for first, second in product((mine, count + mine), (other, count + other)):
+                    moved = beam * dot(left[row, first], right[row, second])
+                    whole[row, a, place[first], b, place[second]] += moved
 
 
 def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:

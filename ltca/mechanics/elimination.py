@@ -289,8 +289,8 @@ def _eliminate(at: Any, part: Pressing, whole: FloatArray, left: FloatArray, *, 
     flat_placed = placed.reshape(rows, rollers * components, size)
     down, across = products[:, size:, :size] + flat_placed, products[:, :size, size:-1] + flat_placed.swapaxes(1, 2)
     diagonal = np.einsum("bii->bi", block)
-    if components > 1:
-        diagonal[:, 1::2] += LEAST_TURNING * np.abs(diagonal[:, ::2])
+    for component in range(1, components):
+        diagonal[:, component::components] += LEAST_TURNING * np.abs(diagonal[:, ::components])
     diagonal += diagonal == 0.0
     short = unbalanced.reshape(rows, rollers * components) - products[:, size:, -1]
     placing = solved(block, np.concatenate((down, short[..., None]), axis=-1))
@@ -331,9 +331,9 @@ def _is_near(at: Any, de: FloatArray, stiffness: FloatArray) -> NDArray[np.bool_
 
 def _bounded(at: Any, dx: FloatArray) -> FloatArray:
     """Corrections of places and leans, at most half of what is pressed together: beyond, other slices meet."""
-    if at.system.components == 1 or not dx.size:
+    if dx.shape[-1] == 1 or not dx.size:
         return dx
-    each = [0.5 * (places.room + at.half * np.abs(places.at_race - places.at_bore)) for places in at.discs]
+    each = [0.5 * (places.room + np.abs(places.at_race - places.at_bore).sum(axis=1)) for places in at.discs]
     room = np.concatenate([at.picked(one, own[1]) for one, own in zip(each, at.chosen, strict=True)], axis=1)
     room = np.maximum(room, LEAST_ROOM)
     long = np.abs(dx).max(axis=-1)
@@ -406,8 +406,8 @@ def _own_stiffness(stiffness: FloatArray, press: FloatArray) -> FloatArray:
 
 def _hold_turning(blocks: FloatArray) -> None:
     """Hold rollers that touch at one end alone a little against turning about it, in place."""
-    if blocks.shape[-1] > 1:
-        blocks[..., 1, 1] += LEAST_TURNING * blocks[..., 0, 0]
+    for component in range(1, blocks.shape[-1]):
+        blocks[..., component, component] += LEAST_TURNING * blocks[..., 0, 0]
 
 
 def _solved_blocks(blocks: FloatArray, right: FloatArray) -> FloatArray:

@@ -55,14 +55,11 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
     pin_radius = at.discs[disc].flank.effective_radius
     radii = pin_radius, laws.outer_radius, laws.hole_radius, laws.inner_radius
 
+    nears = [one.near for one in at.slices_after(disc)]
+
     def of_kind(number: int, radius: FloatArray) -> FloatArray:
-        law, approach = laws.laws[number], at.after[:, 0, kinds[number]]
-        if system.components == 1:
-            return np.asarray(law.energy(approach, radius))
-        curved, near = np.broadcast_to(radius, approach.shape), at.slices_after(disc)[number].near
-        return np.asarray(
-            law.energy(law.respond(approach, at.after[:, 1, kinds[number]] / at.half, curved, near), curved)
-        )
+        near = nears[number] if nears else None
+        return system.every_law.energy(laws.laws[number], at.after[:, :, kinds[number]], at.half, radius, near)
 
     energy = sum((of_kind(number, radius).sum(axis=-1) for number, radius in enumerate(radii)), np.zeros(rows))
     low, high = (of_kind(0, pin_radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))

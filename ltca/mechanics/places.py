@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import ComplexArray, FloatArray
-from ltca.geometry.coordinates import WHEEL_ANGLE, X, Y
-from ltca.geometry.pair_motion import KnownPins, PairTilt, dot
+from ltca.geometry.coordinates import WHEEL_ANGLE, Coordinates, X, Y
+from ltca.geometry.pair_motion import KnownPins, PairTilt, Turns, dot
 from ltca.geometry.pairs import ContactGeometry
 
 Indices = NDArray[np.intp]
@@ -43,14 +43,36 @@ class DiscPlaces:
         # Along and across the rays.
         self.displaced = self.rays.direction.conjugate() * self.displacement
         self.total = self.rays.outermost - self.rays.touching(self.displaced)
-        self.tilts: tuple[PairTilt, PairTilt] | None = None
+        self.half = np.asarray(geometry.half_width, dtype=float)
+        self.tilts: list[tuple[PairTilt, PairTilt]] = []
+        self.turns: list[tuple[Turns, Turns]] = []
+        # By half the thickness, mm, (positions, leans, pairs or 1): pins on the flank and in holes, journals, bores.
+        self.pin_tilts = self.hole_tilts = self.at_race = self.at_bore = np.zeros((angle.size, 0, 1))
         if geometry.coordinates_of(pose).leans:
-            lean_pins, lean_holes = (None, None) if leans is None else (leans[:, :pins], leans[:, pins:])
-            leaning = geometry.flank_lean(angle, pose, lean_pins), geometry.hole_lean(pose, lean_holes)
-            self.turns, own = (leaning[0][1], leaning[1][1]), geometry.coordinates_of(pose)
-            self.tilts = self.flank.leaning(*leaning[0], own), self.holes.leaning(*leaning[1], own)
-            journals = self.bores.each(geometry.journal_leans(pose), self.rollers)
-            self.at_race, self.at_bore = (dot(self.rays.direction, lean) for lean in (journals, geometry.lean(pose)))
+            self._lean(
+                geometry.coordinates_of(pose), *((None, None) if leans is None else (leans[:, :pins], leans[:, pins:]))
+            )
+
+    def _lean(self, own: Coordinates, on_pins: ComplexArray | None, in_holes: ComplexArray | None) -> None:
+        """Tilts of the contacts, with the leans of displaced pins."""
+        geometry, direction = self.geometry, self.rays.direction
+        flank, holes = geometry.flank_lean(self.angle, self.pose, on_pins), geometry.hole_lean(self.pose, in_holes)
+        self.turns = [(flank[1], holes[1])]
+        self.tilts = [(self.flank.leaning(*flank, own), self.holes.leaning(*holes, own))]
+        journals = self.bores.each(geometry.journal_leans(self.pose), self.rollers)
+        tilts = (
+            *(pair.tilt for pair in self.tilts[0]),
+            dot(direction, journals),
+            dot(direction, geometry.lean(self.pose)),
+        )
+        self.pin_tilts, self.hole_tilts, self.at_race, self.at_bore = ((self.half * each)[:, None] for each in tilts)
+
+    @cached_property
+    def gradients(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Derivatives by the pose of wheel pins and shaft pins: of approaches, then of tilts by half the thickness."""
+        approach = self.flank.gradient, self.holes.gradient
+        half = self.half[..., None]
+        return [approach, *((half * pins.gradient, half * holes.gradient) for pins, holes in self.tilts)]
 
     @property
     def room(self) -> FloatArray:
@@ -85,13 +107,20 @@ class DiscPlaces:
         self.inward, self.outer = inward, (self.total - inward) * beyond / (self.length + rays.bore_play)
 
 
+def reach_of(deformations: FloatArray) -> FloatArray:
+    """Return how far contacts reach where they are pressed most, mm; components are approaches and, in slices, tilts."""
+    if deformations.shape[1] == 1:
+        return deformations[:, 0]
+    return np.asarray(deformations[:, 0] + np.abs(deformations[:, 1:]).sum(axis=1))
+
+
 class State(NamedTuple):
     """Inner unknowns at poses: contact parameters, rollers, deformations, displacements of pins, starts of laws."""
 
     parameter: FloatArray | None
     place: FloatArray
     share: FloatArray
-    lean: FloatArray
+    lean: FloatArray  # shape (positions, leans of a roller, rollers)
     approach: FloatArray | None
     shifts: ComplexArray | None
     near: tuple[FloatArray, ...]

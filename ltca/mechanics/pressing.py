@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ltca.arrays import FloatArray
-from ltca.geometry.coordinates import DISC_ROTATION
+from ltca.geometry.coordinates import DISC_PLACE, DISC_ROTATION
 from ltca.geometry.pair_motion import dot
 from ltca.mechanics.displaced_pins import solved
 from ltca.mechanics.places import DiscPlaces, Indices
@@ -88,9 +88,10 @@ def _gradients(at: Any, disc: int) -> tuple[FloatArray, FloatArray]:
     pins, bores, holes, races = at.local[disc]
     size = at.columns[disc].size
     g = np.zeros((at.angle.size, system.components, races.stop, size))
-    by_approach = g[:, 0]
-    by_approach[:, pins] = gradient_with_crank(at, places, at.picked(places.flank.gradient, some[0]))
-    by_approach[:, holes] = gradient_with_crank(at, places, at.picked(places.holes.gradient, some[2]))
+    components = g.swapaxes(0, 1)
+    for component, (on_pins, in_holes) in zip(components, places.gradients, strict=True):
+        component[:, pins] = gradient_with_crank(at, places, at.picked(on_pins, some[0]))
+        component[:, holes] = gradient_with_crank(at, places, at.picked(in_holes, some[2]))
     moved = places.bores.gradient
     if at.by_crank:
         both = bores_moved(at, places)
@@ -98,14 +99,10 @@ def _gradients(at: Any, disc: int) -> tuple[FloatArray, FloatArray]:
     if moved.shape[1] > 1:
         moved = moved[row, some[1] // (system.rollers // moved.shape[1])]
     turned = at.picked(places.outward, some[1]).conjugate()[..., None] * moved
-    np.negative(turned.real, out=by_approach[:, bores])
-    if places.tilts is not None:
-        half = at._thick
-        by_tilt = g[:, 1]
-        by_tilt[:, pins] = half * gradient_with_crank(at, places, at.picked(places.tilts[0].gradient, some[0]))
-        by_tilt[:, holes] = half * gradient_with_crank(at, places, at.picked(places.tilts[1].gradient, some[2]))
+    np.negative(turned.real, out=components[0][:, bores])
+    for by_tilt in components[1:]:
         ray = at.picked(places.rays.direction, some[1])
-        both = half * np.stack((ray.real, ray.imag), axis=-1)
+        both = at.half[..., None] * np.stack((ray.real, ray.imag), axis=-1)
         by_tilt[:, bores, system.one.lean_place] = -both
         crank_of = some[1] // (system.rollers // places.bores.arm.shape[1])
         for crank in range(system.one.cranks):
@@ -156,18 +153,12 @@ def _rub(at: Any, disc: int, g: FloatArray) -> FloatArray:
     for where, which in ((pins, some[0]), (holes, system.pins + some[2])):
         by = by_load[row, which][..., None]
         found[:, 0, where] += by * slip[row, which]
-        if places.tilts is None:
-            continue
-        motion = places.flank if where is pins else places.holes
-        along = (
-            at._thick
-            * by_moment[row, which][..., None]
-            * motion.along[row, which if where is pins else some[2]][..., :2]
-        )
-        second = found[:, 1]
-        second[:, where, system.one.lean_place] += along
-        if where is pins and system.one.wheel_leans:
-            second[:, where, system.one.wheel_lean_place] -= along
+        for by_tilt in found.swapaxes(0, 1)[1:]:
+            motion, own = (places.flank, which) if where is pins else (places.holes, some[2])
+            along = at.half[..., None] * by_moment[row, which][..., None] * motion.along[row, own][..., DISC_PLACE]
+            by_tilt[:, where, system.one.lean_place] += along
+            if where is pins and system.one.wheel_leans:
+                by_tilt[:, where, system.one.wheel_lean_place] -= along
     if by_slip is not None:
         at.sticking.append((by_slip, slip, held))
     return found
@@ -193,9 +184,9 @@ def bends(at: Any, disc: int) -> FloatArray:
     system, places = at.system, at.discs[disc]
     pins, bores, holes, _ = system.of_kind[disc]
     found = places.flank.bend(at.load[:, 0, pins]) + places.holes.bend(at.load[:, 0, holes])
-    if places.tilts is not None:
-        found += places.flank.bend_leans(at.load[:, 1, pins] * at.half, places.turns[0], system.one)
-        found += places.holes.bend_leans(at.load[:, 1, holes] * at.half, places.turns[1], system.one)
+    for moment, (on_pins, in_holes) in zip(at.load.swapaxes(0, 1)[1:], places.turns, strict=True):
+        found += places.flank.bend_leans(moment[:, pins] * at.half, on_pins, system.one)
+        found += places.holes.bend_leans(moment[:, holes] * at.half, in_holes, system.one)
     cranks = places.bores.arm.shape[1]
     push = (at.load[:, 0, bores] * places.outward).reshape(found.shape[0], cranks, -1).sum(axis=2).conjugate()
     found[:, DISC_ROTATION, DISC_ROTATION] += (push * places.bores.arm).real.sum(axis=1)

@@ -57,7 +57,7 @@ class DiscByItself:
         np.testing.assert_allclose(follow.pose, found.pose, rtol=0.0, atol=1e-15)
         own = slice(number * rollers, (number + 1) * rollers)
         self.circle = np.abs(self.geometry.placement.wheel_pin_centres).max()
-        self.inward, self.lean = follow.place[:, own], follow.lean[:, own] / self.half
+        self.inward, self.lean = follow.place[:, own], follow.lean.sum(axis=1)[:, own] / self.half
 
     def placed(self, pose):
         """Approaches and tilts of all kinds, mm and rad, with pins and rollers as they are, and pairs of pins and holes."""
