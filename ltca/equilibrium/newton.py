@@ -19,6 +19,7 @@ from ltca.drive.least_torque import ROUND_OFF, ROUND_OFF_BOUND
 from ltca.equilibrium.reducer import Evaluation, Reducer
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import WHEEL_ANGLE
+from ltca.mechanics.contacts import LEFT_WEIGHT
 
 TOLERANCE = 1e-9
 """Largest residual accepted, as a part of the load T/(e z_P)."""
@@ -293,11 +294,11 @@ class Search:
         pose = self.pose[rows] + step_pose
         response = self.evaluate(rows, pose, start, roughly=True)
         gradient, tangent = self.scaled(rows, response)
-        # Longer than the minimum: round-off of the slope must not send a step back.
-        noise = 1e-3 * TOLERANCE * self.load[rows] * np.max(np.abs(step), axis=1)
+        # Longer than the minimum: neither round-off of the slope nor what contacts leave open must send a step back.
+        round_off, longest = 1e-3 * TOLERANCE * self.load[rows], np.max(np.abs(step), axis=1)
         end = np.einsum("bi,bi->b", gradient, step)
         for _ in range(MAX_LINE_SEARCH_STEPS):
-            far = end > LINE_SEARCH_SLOPE_RATIO * np.abs(slope) + noise
+            far = end > LINE_SEARCH_SLOPE_RATIO * np.abs(slope) + (round_off + response.left / LEFT_WEIGHT) * longest
             if not np.any(far):
                 break
             high[far], high_slope[far] = fraction[far], end[far]

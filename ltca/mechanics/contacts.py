@@ -314,10 +314,13 @@ class Linearised:
             _, bores, _, races = system.of_kind[disc]
             place, lean = self.place[:, own], self.lean[:, :, own]
             unplaced = np.isnan(place)
+            middle = 0.5 * (at.at_race + at.at_bore)
             if unplaced.any():
                 place = np.where(unplaced, state.share[:, own] * at.total, place)
+                # One that touches with an end alone leans half as far as bore and race do against each other.
+                ends = (unplaced & (at.total <= 0.0))[:, None]
+                place, lean = np.where(ends[:, 0], 0.5 * at.total, place), np.where(ends, middle, lean)
             # Moments in both contacts press the same way: a roller leans between race and bore, or little beside.
-            middle = 0.5 * (at.at_race + at.at_bore)
             room = 0.5 * (np.abs(at.at_race - at.at_bore) + at.room[:, None])
             lean = np.where(np.isnan(lean), middle, np.clip(lean, middle - room, middle + room))
             if e is not None and system.coupled:
