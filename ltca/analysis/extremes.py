@@ -318,14 +318,13 @@ class PeakSearch:
     def promising(self) -> FloatArray:
         """Return the places where an extreme may exceed every sample by more than the tolerance, ascending, rad."""
         found = [np.zeros(0)]
-        estimates = _kinks_on_both_sides(self.angle, self.values)
         for columns, is_end in self.groups.values():
             values = self.values[:, columns]
             least = np.max(values) + RELATIVE_REFINEMENT_TOLERANCE * (np.ptp(values) if is_end else np.max(values))
-            for places, heights in estimates:
-                height = heights[:, columns].ravel()
+            for places, heights in _kinks_on_both_sides(self.angle, values):
+                height = heights.ravel()
                 first = np.argsort(-height, kind="stable")[:MAX_TRIALS_PER_SIDE]
-                found.append(places[:, columns].ravel()[first[height[first] > least]])
+                found.append(places.ravel()[first[height[first] > least]])
         kept: list[float] = []
         for place in np.sort(np.concatenate(found)):
             apart = place - kept[-1] if kept else np.inf
