@@ -1,7 +1,7 @@
 """Files of influence coefficients: the user's, or derived once for each distinct shape and kept.
 
-`ltca` reads files only: `fem` registers a function in the entry-point group ``cyclo.derivations``, of a drive, ``state`` or
-``bodies``, ``store`` (of solid bodies) and ``processes``, that returns the dataset of docs/theory/coefficients.md.
+`ltca` reads files only: `fem` registers a function in the entry-point group ``cyclo.derivations``, of a drive, ``bodies``,
+``store`` and ``processes``, that hands the dataset of docs/theory/coefficients.md to ``store``.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
@@ -222,15 +222,12 @@ def _processes(derivations: int, bodies: Bodies) -> int:
 def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
 
-    def store(dataset: xr.Dataset) -> None:
+    def store(dataset: Labelled) -> None:
         require_laws(dataset, str(path))
         write_coefficients(dataset, path)
 
-    if bodies == "solid":
-        # Hours of work are kept until its file stands.
-        derivation()(drive, bodies=bodies, processes=processes, store=store)
-    else:
-        store(derivation()(drive, state="strain", processes=processes))
+    # Hours of work on solid bodies are kept until its file stands.
+    derivation()(drive, bodies=bodies, processes=processes, store=store)
 
 
 def derivation(name: str = DERIVATION) -> Callable[..., Any]:

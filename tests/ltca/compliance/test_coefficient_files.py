@@ -40,9 +40,9 @@ def derived(monkeypatch, tmp_path):
     """Bodies in closed form in place of finite elements, an empty cache, and the list of what was derived."""
     shapes = []
 
-    def derive(drive, *, state, processes):
+    def derive(drive, *, bodies, processes, store):
         shapes.append(drive.body_shape())
-        return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
+        store(closed_form_coefficients(drive, half_width=0.05, depth=300.0))
 
     code_hash("ltca", "fem")  # by the usual cache, where it is kept
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
@@ -181,11 +181,11 @@ def test_what_does_not_fit_beside_another_is_derived_alone(paper_cases, derived,
     """Two at once share the memory: one that fails beside another is tried once more by itself."""
     tried = []
 
-    def derive(drive, *, state, processes):
+    def derive(drive, *, bodies, processes, store):
         tried.append((drive.name, processes))
         if drive.name == "large" and processes > 1:
             raise CycloError("too large")
-        return closed_form_coefficients(drive, half_width=0.05, depth=300.0)
+        store(closed_form_coefficients(drive, half_width=0.05, depth=300.0))
 
     monkeypatch.setattr(coefficient_files, "derivation", lambda: derive)
     monkeypatch.setattr(coefficient_files, "MAX_DERIVATIONS", 2)
