@@ -37,14 +37,14 @@ from fem.coefficients.wall_strain import continue_under_patches, wall_modulus, w
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh
 from fem.mesh.boundary_division import MAX_TURN
-from fem.mesh.disc_parts import SAME_NODE, Cells, DiscPart, mesh_disc_parts
+from fem.mesh.disc_parts import SAME_NODE, Cells, DiscPart, lobe_count, mesh_disc_parts
 from fem.mesh.element_size import Refinement, SizeField
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.mesh.triangulation import default_coarse_size, estimate_unknowns, mesh_circle, mesh_ring, size_field
 from fem.shapes import CircleShape, DiscShape, RingShape
 from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
-from ltca.output.resources import available_memory
+from ltca.output.resources import available_memory, derivation_memory
 from ltca.reading.coefficient_laws import project_rigid_motions
 
 # Element edge at a patch for its half-width, and growth of the edge by distance, on a mesh of size 1. Measured on
@@ -52,10 +52,10 @@ from ltca.reading.coefficient_laws import project_rigid_motions
 EDGE_SHARE = 0.4
 GROWTH = 0.4
 # Of the error of quadratic elements in units of the near field, by the square of what linear ones miss beside them: 0.035 to 0.09
-# measured against meshes of half the size (docs/theory/coefficients.md).
-ERROR_FACTOR = 0.12
-# Of the largest error of a stress, by the largest difference of both: 0.08 to 0.13 measured likewise.
-STRESS_ERROR_SHARE = 0.2
+# on discs, 0.12 to 0.27 on pins, rollers and races, measured against finer meshes (docs/theory/coefficients.md).
+DISC_ERROR, ROUND_ERROR = 0.15, 0.3
+# Of the largest error of a stress, by the largest difference of both: 0.08 to 0.17 measured likewise.
+STRESS_ERROR_SHARE = 0.3
 # Pins, rollers and race are small: a mesh of half the size costs nothing.
 ROUND_SIZE = 0.5
 # Elements stay small to this distance from the middle of a patch, in half-widths.
@@ -173,8 +173,10 @@ def estimate_disc_unknowns(shape: DiscShape, stations: DiscStations, size: float
 def require_disc_memory(shape: DiscShape, stations: DiscStations, size: float = 1.0, processes: int = 1) -> None:
     """Raise MemoryLimitError when the disc's mesh and solution would not fit into memory shared by some processes."""
     unknowns = estimate_disc_unknowns(shape, stations, size)
+    in_cells = any(0 in cells.walls for cells in stations.cells(shape))
+    needed = derivation_memory(lobe_count(shape), size) if in_cells else solution_memory(unknowns)
     what = "the disc for its influence coefficients"
-    require_memory(unknowns, solution_memory(unknowns), what, available=available_memory() / processes)
+    require_memory(unknowns, needed, what, available=available_memory() / processes)
 
 
 def derive_disc(
@@ -241,7 +243,8 @@ def derive_disc(
         wide_stations=wide,
         wide_approach=wide_approach,
         stress=stress,
-        error=error_of_quadratic(work - linear.own(placed, datum=1), near_field(material, thickness, state)) / largest,
+        error=error_of_quadratic(work - linear.own(placed, datum=1), near_field(material, thickness, state), DISC_ERROR)
+        / largest,
         stress_error=STRESS_ERROR_SHARE * float(np.max(apart) / np.max(np.abs(stress))),
         reciprocity=float(reciprocity),
         rigid_residual=float(max(np.max(np.abs(left)) / np.max(np.abs(resultants)), rest)),
@@ -258,14 +261,14 @@ def near_field(material: Material, thickness: float, state: PlaneState) -> float
     return 2.0 / (np.pi * wall_modulus(material, state) * thickness)
 
 
-def error_of_quadratic(work: FloatArray, unit: float) -> float:
+def error_of_quadratic(work: FloatArray, unit: float, factor: float) -> float:
     """Return an estimate of the largest error of approaches by quadratic elements, mm/N.
 
     `work` is the work, twice, of each load on quadratic elements less that on linear ones, mm/N: the square of their distance in
     energy, which goes with the square of the size of the elements, that from the exact solution with its fourth power. No entry
     is more in error than the worst on the diagonal (Cauchy and Schwarz).
     """
-    return float(ERROR_FACTOR * np.max(work) ** 2 / unit)
+    return float(factor * np.max(work) ** 2 / unit)
 
 
 def disc_size_field(shape: DiscShape, stations: DiscStations, size: float = 1.0) -> SizeField:
@@ -475,7 +478,7 @@ def _derive_round(
     compliance, displacement = condensed.compliance, condensed.displacement(np.eye(len(places) + 1))
     measured = np.asarray(loads.T @ displacement)
     work = np.diag(compliance) - _first_order_work(body, stiffness, loads, held)
-    error = error_of_quadratic(work[: len(places)], near_field(material, thickness, state))
+    error = error_of_quadratic(work[: len(places)], near_field(material, thickness, state), ROUND_ERROR)
     result = DerivedRound(
         approach=compliance[: len(places), : len(places)],
         half_width=width,

@@ -349,7 +349,7 @@ def need_of_solid(shape: DiscShape, places: DiscStations, *, size: float, layers
         size=size,
         growth=edge_growth(size),
         layers=layers,
-        plane_unknowns=sum(estimate_disc_unknowns(shape, places, each) for each in (size, COARSE_RATIO * size)),
+        plane_unknowns=estimate_disc_unknowns(shape, places, size),
     )
 
 

@@ -35,9 +35,9 @@ DERIVATION = "finite-elements"
 SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
 """Files of shipped drives (``python benchmarks/shipped_coefficients.py``)."""
 MAX_DERIVATIONS = 2
-"""Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
-SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
-"""Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
+"""Most derivations at the same time: one takes 0.4 GB for a disc like the paper's, 1.1 GB with 198 teeth."""
+SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 3.0, 0.08, 0.05, 0.1
+"""Time of a derivation on one core, s: mostly fixed, then by the number of loads."""
 
 
 def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:

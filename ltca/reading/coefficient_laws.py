@@ -240,14 +240,16 @@ def _stated_quality(dataset: Labelled) -> Iterator[Check]:
         for name in (INTERPOLATION, TILT_INTERPOLATION):
             yield from _stated(dataset, name, INTERPOLATION_LIMIT, reason)
     reason = (
-        "of the largest entry without rigid motions; halving the size divides it by 5 (measured; by 4 or more with "
-        "quadratic elements), so a mesh of half the size changes it by less than 0.3 %"
+        "of the largest entry without rigid motions; told two to ten times as large as it is (measured), or the change from a "
+        "mesh of twice the size, a fifth of which is left"
     )
     yield from _stated(dataset, CONVERGENCE, CONVERGENCE_LIMIT, reason)
     if is_solid(dataset):
         reason = "as for even loads, of smaller entries and a layer less: half the size changes them by less than 1 %"
         yield from _stated(dataset, TILT_CONVERGENCE, TILT_CONVERGENCE_LIMIT, reason)
-    reason = "of the largest entry; halving the size divides it by 15 (measured; by 16 in theory)"
+    reason = (
+        "of the largest entry; told up to three times as large as it is (measured), or the change from twice the size"
+    )
     yield from _stated(dataset, STRESS_CONVERGENCE, STRESS_CONVERGENCE_LIMIT, reason)
 
 
