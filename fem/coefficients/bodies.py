@@ -54,7 +54,8 @@ GROWTH = 0.4
 # Of the error of quadratic elements in units of the near field, by the square of what linear ones miss beside them: 0.035 to 0.09
 # on discs, 0.12 to 0.27 on pins, rollers and races, measured against finer meshes (docs/theory/coefficients.md).
 DISC_ERROR, ROUND_ERROR = 0.12, 0.3
-# Of the largest error of a stress, by the largest difference of both: 0.08 to 0.37 measured likewise, the most with a quarter of the stations.
+# Of the largest error of a stress, by the largest difference of both: 0.08 to 0.13 measured likewise, 0.37 with a quarter of the
+# stations at twice the size.
 STRESS_ERROR_SHARE = 0.4
 # Pins, rollers and race are small: a mesh of half the size costs nothing.
 ROUND_SIZE = 0.5
