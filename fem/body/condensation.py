@@ -119,7 +119,23 @@ def order_nodes(body: BodyMesh) -> IntArray:
 
 def order_vertices(corners: IntArray, count: int) -> FloatArray:
     """Return the place of each of `count` vertices in an elimination order; `corners` of the elements, (corners, elements)."""
-    graph = _graph(corners, count)
+    return _order_graph(_graph(corners, count))
+
+
+def order_graph(graph: sp.csc_matrix) -> IntArray:
+    """Return an elimination order of the nodes of a graph, a symmetric matrix with its diagonal."""
+    return np.argsort(_order_graph(graph), kind="stable").astype(np.int64)
+
+
+def node_graph(stiffness: sp.csc_matrix) -> sp.csc_matrix:
+    """Return which nodes a stiffness matrix joins."""
+    graph = sp.csc_matrix(stiffness[::2, ::2])
+    graph.data = np.ones_like(graph.data)
+    return graph
+
+
+def _order_graph(graph: sp.csc_matrix) -> FloatArray:
+    """Return the place of each node of a graph in an elimination order."""
     try:
         return _nested_dissection(graph)
     except (ImportError, RuntimeError):
@@ -155,9 +171,8 @@ def _graph(corners: IntArray, count: int) -> sp.csc_matrix:
     return sp.csc_matrix((np.ones(rows.size), (rows, columns)), shape=(count, count))
 
 
-def statically_determinate(body: BodyMesh, loads: sp.csc_matrix) -> IntArray:
-    """Return three unknowns that hold a free body without straining it, at nodes far from the loads."""
-    places = body.mesh.doflocs.T
+def statically_determinate(places: FloatArray, loads: sp.csc_matrix) -> IntArray:
+    """Return three unknowns that hold a free body without straining it, at nodes far from the loads; shape (nodes, 2)."""
     first, second, _ = unloaded_nodes(places, loads)
     direction = places[second] - places[first]
     across = 1 if abs(direction[0]) >= abs(direction[1]) else 0
@@ -213,7 +228,7 @@ def condense_body(
     modes = rigid_modes(body, centre)
     area = area_loads(body, centre) if free else None
     held = np.zeros(count, dtype=bool)
-    held[statically_determinate(body, loads) if fixed is None else fixed] = True
+    held[statically_determinate(body.mesh.doflocs.T, loads) if fixed is None else fixed] = True
     unknowns = (2 * order[:, None] + np.arange(2)).reshape(-1)
     kept = unknowns[~held[unknowns]]
     trailing = loads if area is None else sp.hstack([loads, sp.csc_matrix(area)], format="csc")

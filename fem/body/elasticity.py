@@ -8,16 +8,18 @@ scikit-fem's ``ElementVector(ElementTriP2())``. Forces are those on the full thi
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import reduce
+from operator import add
 from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
-from skfem.models.elasticity import lame_parameters, linear_elasticity
+from skfem import Basis, BilinearForm, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
+from skfem.models.elasticity import lame_parameters
 
 from fem.mesh.body_mesh import BodyMesh
-from ltca.arrays import FloatArray, IntArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.drive.parts import Material
 
 PlaneState = Literal["strain", "stress"]
@@ -40,8 +42,8 @@ def plane_lame_parameters(material: Material, state: PlaneState) -> tuple[float,
     return float(lam), float(mu)
 
 
-def _vector_element(body: BodyMesh) -> ElementVector:
-    return ElementVector(ElementTriP2() if body.order == 2 else ElementTriP1())
+def _scalar_element(body: BodyMesh) -> ElementTriP1 | ElementTriP2:
+    return ElementTriP2() if body.order == 2 else ElementTriP1()
 
 
 def curved_elements(body: BodyMesh) -> NDArray[np.bool_]:
@@ -65,29 +67,64 @@ def assemble_stiffness(
     The thickness is in mm.
     """
     lam, mu = plane_lame_parameters(material, state)
-    form, curved = linear_elasticity(thickness * lam, thickness * mu), curved_elements(body)
+    curved = curved_elements(body)
     # Curved elements cost twice as many points; they lie along the boundary only.
-    parts = [
-        form.assemble(Basis(body.mesh, _vector_element(body), elements=elements, intorder=order))
+    bases = [
+        Basis(body.mesh, _scalar_element(body), elements=elements, intorder=order)
         for elements, order in (
             (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
             (np.flatnonzero(curved), CURVED_QUADRATURE),
         )
         if elements.size
     ]
-    found = sp.csc_matrix(sum(parts[1:], parts[0]))
+    # Products of derivatives along x and y, each a matrix of the nodes with the same places of entries.
+    along, across, mixed = (_derivative_products(bases, *axes) for axes in ((0, 0), (1, 1), (0, 1)))
+    turned = sp.csr_matrix(mixed.T)
+    turned.sort_indices()
+    blocks = np.empty((along.nnz, 2, 2))
+    blocks[:, 0, 0] = (lam + 2.0 * mu) * along.data + mu * across.data
+    blocks[:, 1, 1] = (lam + 2.0 * mu) * across.data + mu * along.data
+    blocks[:, 0, 1] = lam * turned.data + mu * mixed.data
+    blocks[:, 1, 0] = lam * mixed.data + mu * turned.data
+    found = sp.bsr_matrix((thickness * blocks, along.indices, along.indptr), shape=(body.unknowns,) * 2).tocsc()
     found.sort_indices()
     return found
 
 
+def _derivative_products(bases: list[Basis], of_trial: int, of_test: int) -> sp.csr_matrix:
+    """Return the matrix of ∫ ∂u/∂x_i ∂v/∂x_j dA of scalars, zeros among its entries."""
+    form = BilinearForm(lambda u, v, w: u.grad[of_trial] * v.grad[of_test])
+    found = reduce(add, (form.coo_data(basis) for basis in bases))
+    matrix = sp.coo_matrix((found.data, tuple(found.indices)), shape=found.shape).tocsr()
+    matrix.sort_indices()
+    return matrix
+
+
+def first_order_space(body: BodyMesh) -> sp.csc_matrix:
+    """Return the displacement of all nodes of a quadratic mesh by that of its vertices, mid-side nodes in the mean of the ends.
+
+    What displaces so, linearly on the same curved elements, is a part of what quadratic elements can: every load does less work
+    on it. Shape (unknowns, 2 vertices).
+    """
+    vertices, facets = body.mesh.nvertices, body.mesh.facets
+    rows = np.concatenate([np.arange(vertices), np.tile(vertices + np.arange(facets.shape[1]), 2)])
+    columns = np.concatenate([np.arange(vertices), *facets])
+    nodes = sp.csr_matrix((np.where(rows < vertices, 1.0, 0.5), (rows, columns)), shape=(body.node_count, vertices))
+    return sp.csc_matrix(sp.kron(nodes, np.eye(2)))
+
+
 def rigid_modes(body: BodyMesh, centre: complex = 0j) -> FloatArray:
     """Return nodal displacements of unit translations in x and y and of a unit rotation about a centre, shape (2 nodes, 3)."""
-    x, y = body.mesh.doflocs
-    modes = np.zeros((2 * len(x), 3))
+    return modes_at(body.places - centre)
+
+
+def modes_at(arms: ComplexArray) -> FloatArray:
+    """Return the rigid modes at places relative to the centre of the rotation, shape (2 places, 3)."""
+    modes = np.zeros((2 * len(arms), 3))
     modes[0::2, 0] = 1.0
     modes[1::2, 1] = 1.0
-    modes[0::2, 2] = -(y - centre.imag)
-    modes[1::2, 2] = x - centre.real
+    modes[0::2, 2] = -arms.imag
+    modes[1::2, 2] = arms.real
     return modes
 
 
@@ -146,7 +183,7 @@ def traction_load(
     `traction` takes places (x, y) and outward normals, arrays of shape (2, …), mm, and returns tx, ty in MPa.
     """
     facets = body.require_boundary(boundary)
-    basis = FacetBasis(body.mesh, _vector_element(body), facets=facets, intorder=2 * CURVED_QUADRATURE)
+    basis = FacetBasis(body.mesh, ElementVector(_scalar_element(body)), facets=facets, intorder=2 * CURVED_QUADRATURE)
 
     def work(v, w):  # type: ignore[no-untyped-def]
         tx, ty = traction(w.x, w.n)

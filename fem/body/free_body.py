@@ -14,15 +14,18 @@ import scipy.sparse as sp
 
 from fem.body.surface import GAUSS_POINTS, GAUSS_WEIGHTS, quadratic_shapes, quadratic_slopes
 from fem.mesh.body_mesh import BodyMesh
+from ltca.arrays import BoolArray
 
 
-def boundary_motion_loads(body: BodyMesh, boundary: str, centre: complex = 0j) -> sp.csc_matrix:
+def boundary_motion_loads(
+    body: BodyMesh, boundary: str, edges: BoolArray | slice = slice(None), *, centre: complex = 0j
+) -> sp.csc_matrix:
     r"""Return W: nodal loads shaped like the rigid modes along a closed boundary, :math:`\int N_i r\,ds`, shape (unknowns, 3).
 
     Their transpose times a displacement gives its means over the boundary times its length (mm, mm, and mm² for the rotation
-    about `centre`).
+    about `centre`); `edges` are those that count, all by default.
     """
-    nodes = body.boundary_nodes(boundary)
+    nodes = body.boundary_nodes(boundary)[edges]
     x, y = body.mesh.doflocs
     places = x[nodes] + 1j * y[nodes]
     shapes = quadratic_shapes(GAUSS_POINTS)

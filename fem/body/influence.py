@@ -18,21 +18,23 @@ balanced is that relative to the rigid motion that W measures (`fem.body.free_bo
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spla
 
-from fem.body.condensation import SYMMETRIC, order_nodes, statically_determinate
-from fem.body.elasticity import rigid_modes, unknowns_of_nodes
+from fem.body.condensation import SYMMETRIC, node_graph, order_graph, statically_determinate
+from fem.body.elasticity import modes_at, unknowns_of_nodes
 from fem.body.sparse_factor import factor_sparse
-from fem.mesh.body_mesh import BodyMesh
-from ltca.arrays import FloatArray, IntArray
+from ltca.arrays import ComplexArray, FloatArray, IntArray
 
 # Columns of Z that are made dense together. With fewer the overhead of each panel counts, with more the zeros: 64 to
 # 128 take the least time on discs of 26 to 90 teeth.
 PANEL = 96
+# Right-hand sides that are solved for together: of 18 four at a time take half of the time of all at once (SuperLU).
+TOGETHER = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,32 +74,40 @@ class LoadInfluence:
     datums: tuple[Datum, ...]
     sampled: FloatArray
     _carried: sp.csc_matrix
+    _beyond: sp.csr_matrix
 
-    def block(self, measuring: slice, loading: slice, datum: int = 0) -> FloatArray:
+    def block(self, measuring: slice | IntArray, loading: slice, datum: int = 0) -> FloatArray:
         """Return the displacements that some loads measure under a unit of others, both balanced by a datum.
 
         The shape is (measuring, loading); symmetric to the last bit where both slices are the same.
         """
         rows = self._carried[measuring]
-        found = sum_products(rows, rows if measuring == loading else self._carried[loading])
+        same = isinstance(measuring, slice) and measuring == loading
+        found = sum_products(rows, rows if same else self._carried[loading])
+        self._add_beyond(found, measuring, loading)
         return self._refer(found, measuring, loading, self.datums[datum])
 
     def in_every_datum(self, loads: slice) -> tuple[FloatArray, ...]:
         """Return the displacements that some loads measure under one another, by datum; the product is computed once."""
         rows = self._carried[loads]
         held = sum_products(rows, rows)
+        self._add_beyond(held, loads, loads)
         return tuple(self._refer(held.copy(), loads, loads, datum) for datum in self.datums)
 
     def own(self, loads: slice, datum: int = 0) -> FloatArray:
         """Return the displacement that each load measures under itself, shape (loads,)."""
         rows, by = self._carried[loads], self.datums[datum]
-        held = np.asarray(rows.power(2).sum(axis=1)).ravel()
+        held = np.asarray(rows.power(2).sum(axis=1)).ravel() + self._beyond.diagonal()[loads]
         motion, measured = by.motion[:, loads], by.measured[loads]
         crossed = np.einsum("ij,ji->i", measured, motion)
         return np.asarray(held - 2.0 * crossed + np.einsum("ai,ab,bi->i", motion, by.own, motion))
 
+    def _add_beyond(self, held: FloatArray, measuring: slice | IntArray, loading: slice) -> None:
+        entries = self._beyond[measuring, loading].tocoo()
+        held[entries.row, entries.col] += entries.data
+
     @staticmethod
-    def _refer(held: FloatArray, measuring: slice, loading: slice, datum: Datum) -> FloatArray:
+    def _refer(held: FloatArray, measuring: slice | IntArray, loading: slice, datum: Datum) -> FloatArray:
         left, right = datum.motion[:, measuring], datum.motion[:, loading]
         # One product of rank six, so that both halves of a symmetric block stay equal.
         seen = datum.measured[measuring] - 0.5 * left.T @ datum.own
@@ -147,63 +157,84 @@ def _dense_panel(matrix: sp.csc_matrix, panel: IntArray) -> tuple[IntArray, Floa
 
 
 def influence_of_loads(
-    body: BodyMesh,
+    places: ComplexArray,
     stiffness: sp.csc_matrix,
     loads: sp.spmatrix,
-    datums: list[FloatArray],
+    datums: Sequence[sp.csc_matrix],
     sampled: IntArray,
+    *,
+    order: IntArray | None = None,
+    beyond: sp.csc_matrix | None = None,
 ) -> LoadInfluence:
     """Factorise a free body with many loads behind it; the factor of the stiffness is not kept.
 
-    `loads` are nodal forces, shape (unknowns, m). Each datum is three force shapes, shape (unknowns, 3), whose Gram matrix
-    with the rigid modes is regular. Under the `sampled` loads the displacement is solved for.
+    `loads` are nodal forces, shape (unknowns, m), `places` those of the nodes, mm. Each datum is three sets of amounts of the
+    loads, shape (m, 3), whose Gram matrix with the rigid modes is regular. Under the `sampled` loads the displacement is solved
+    for. `order` of elimination of the nodes; `beyond`, shape (m, m), is what loads measure under one another while all nodes are
+    held (`fem.body.joined_parts`).
     """
     loads = sp.csc_matrix(loads)
-    factor, kept = _factorise(body, stiffness, loads)
-    modes = rigid_modes(body)
-    resultants = np.asarray(modes.T @ loads)
-    of_shapes = []
-    for shapes in datums:
-        moved = _displacement(factor, kept, shapes)
-        own = np.asarray(shapes.T @ moved)
-        balance = np.linalg.solve(modes.T @ shapes, resultants)
-        of_shapes.append(Datum(motion=balance, measured=np.asarray(loads.T @ moved), own=0.5 * (own + own.T)))
-    shapes, balance = datums[0], of_shapes[0].motion
-    moved = _displacement(factor, kept, loads[:, sampled].toarray() - shapes @ balance[:, sampled])
-    measured = np.asarray(loads.T @ moved) - balance.T @ (shapes.T @ moved)
-    # Both factors are made at once; what is carried down to the loads is the part below the stiffness.
-    lower, diagonal = factor.L, factor.U.diagonal()[: len(kept)]
-    del factor
-    carried = lower[len(kept) :, : len(kept)]
-    carried.data *= np.sqrt(np.repeat(diagonal, np.diff(carried.indptr)))
-    return LoadInfluence(resultants=resultants, datums=tuple(of_shapes), sampled=measured, _carried=carried)
-
-
-def _factorise(body: BodyMesh, stiffness: sp.csc_matrix, loads: sp.csc_matrix) -> tuple[spla.SuperLU, IntArray]:
-    """Return the factors of the stiffness with the loads below it, and the unknowns in their order, three of them held."""
+    beyond = sp.csr_matrix(loads.shape[1:] * 2) if beyond is None else sp.csr_matrix(beyond)
+    # Datums may load every node; balanced loads do not feel where the body is held.
+    single = np.setdiff1d(np.arange(loads.shape[1]), np.concatenate([sp.csc_matrix(each).indices for each in datums]))
     held = np.zeros(loads.shape[0], dtype=bool)
-    held[statically_determinate(body, loads)] = True
-    unknowns = unknowns_of_nodes(order_nodes(body))
+    held[statically_determinate(np.column_stack([places.real, places.imag]), loads[:, single])] = True
+    unknowns = unknowns_of_nodes(order_graph(node_graph(stiffness)) if order is None else order)
     kept = unknowns[~held[unknowns]]
-    matrix = _bordered_below(stiffness, loads, kept)
-    # Nothing pivots: the stiffness is positive definite, what is beside the loads is one.
-    return factor_sparse(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC), kept
+    # The columns of a symmetric matrix are its rows: no conversion is needed to pick them.
+    factor = factor_below(stiffness.T[kept].tocsc()[:, kept], loads.tocsr()[kept])
+    modes = modes_at(places)
+    resultants = np.asarray(modes.T @ loads)
+    amounts = sp.hstack([*datums, sp.eye_array(loads.shape[1], format="csc")[:, sampled]], format="csc")
+    measured = loads.T @ _displacement(factor, kept, (loads @ amounts).toarray()) + (beyond @ amounts).toarray()
+    of_shapes = []
+    for number, each in enumerate(datums):
+        by = measured[:, 3 * number : 3 * number + 3]
+        balance, own = np.linalg.solve(modes.T @ (loads @ each), resultants), each.T @ by
+        of_shapes.append(Datum(motion=balance, measured=by, own=0.5 * (own + own.T)))
+    # Both the loads that act and those that measure are balanced by the first datum.
+    balance = of_shapes[0].motion
+    seen = measured[:, 3 * len(datums) :] - measured[:, :3] @ balance[:, sampled]
+    seen -= balance.T @ (datums[0].T @ seen)
+    return LoadInfluence(
+        resultants=resultants,
+        datums=tuple(of_shapes),
+        sampled=seen,
+        _carried=carried_down(factor, len(kept)),
+        _beyond=beyond,
+    )
+
+
+def factor_below(inner: sp.csc_matrix, loads: sp.spmatrix) -> spla.SuperLU:
+    """Return the factors of a positive definite matrix with loads, shape (unknowns, m), as rows below it."""
+    # Nothing pivots: what is beside the loads is one.
+    return factor_sparse(
+        _bordered_below(inner, sp.csr_matrix(loads)), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=SYMMETRIC
+    )
+
+
+def carried_down(factor: spla.SuperLU, count: int) -> sp.csc_matrix:
+    """Return Z D^½: what is carried down to the loads below so many unknowns, shape (m, unknowns)."""
+    # Both factors are made at once.
+    lower, diagonal = factor.L, factor.U.diagonal()[:count]
+    carried = lower[count:, :count]
+    carried.data *= np.sqrt(np.repeat(diagonal, np.diff(carried.indptr)))
+    return carried
 
 
 def _displacement(factor: spla.SuperLU, kept: IntArray, force: FloatArray) -> FloatArray:
     """Return the displacement under forces, three unknowns held; shapes (unknowns, k)."""
-    right = np.zeros((factor.shape[0], force.shape[1]))
-    right[: len(kept)] = force[kept]
     found = np.zeros_like(force)
-    found[kept] = factor.solve(right)[: len(kept)]
+    for first in range(0, force.shape[1], TOGETHER):
+        few = slice(first, first + TOGETHER)
+        right = np.zeros((factor.shape[0], force[:, few].shape[1]))
+        right[: len(kept)] = force[kept, few]
+        found[kept, few] = factor.solve(right)[: len(kept)]
     return found
 
 
-def _bordered_below(stiffness: sp.csc_matrix, loads: sp.csc_matrix, kept: IntArray) -> sp.csc_matrix:
-    """Return the kept part of the stiffness with the loads as rows below it and ones on the diagonal beside those."""
-    # The columns of a symmetric matrix are its rows: no conversion is needed to pick them.
-    inner = stiffness.T[kept].tocsc()[:, kept]
-    border = loads.tocsr()[kept]
+def _bordered_below(inner: sp.csc_matrix, border: sp.csr_matrix) -> sp.csc_matrix:
+    """Return a matrix with loads as rows below it and ones on the diagonal beside those."""
     count, number = border.shape
     starts = inner.indptr + border.indptr
     indices = np.empty(int(starts[-1]) + number, dtype=np.int32)

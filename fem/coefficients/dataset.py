@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypedDict
 
 import numpy as np
 
@@ -31,17 +30,12 @@ from fem.coefficients.stations import DiscStations, root_clustering
 from fem.mesh.gmsh_session import load_gmsh
 from fem.mesh.memory_need import require_memory
 from fem.shapes import DriveShapes
-from ltca.arrays import FloatArray
-from ltca.drive.parts import Drive, Material, Materials
+from ltca.drive.parts import Drive
 from ltca.drive.single_discs import nominal_shape
+from ltca.output.labelled import LabelledArray, LabelledDataset
 from ltca.output.provenance import code_hash, code_version
 from ltca.output.resources import available_memory
-from ltca.reading.coefficient_laws import project_rigid_motions
 from ltca.reading.coefficient_schema import elastic_constants
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 DATUM = (
     "disc: relative to the best-fit rigid motion of {} (least squares along its length), the resultant of each "
@@ -63,8 +57,8 @@ def derive_coefficients(
     layers: int = LAYERS,
     processes: int = 1,
     progress: Callable[[str], None] | None = None,
-    store: Callable[[xr.Dataset], object] | None = None,
-) -> xr.Dataset:
+    store: Callable[[Any], object] | None = None,
+) -> Any:
     """Derive the influence coefficients of all bodies of a drive.
 
     Errors of single parts are left out: one dataset serves all drives of one `Drive.shape_fingerprint`.
@@ -78,7 +72,7 @@ def derive_coefficients(
     stations : float
         Multiple of the default numbers of stations (see `DiscStations.of_disc`).
     size : float
-        Multiple of the default element edges; the convergence estimate takes a mesh of twice that.
+        Multiple of the default element edges; that of solid bodies, whose error is told by a mesh of twice that, at most 2.
     state : {"strain", "stress"}
         Plane strain or plane stress.
     keep_clearance : bool
@@ -94,7 +88,8 @@ def derive_coefficients(
     progress : callable, optional
         Called with the name of each step before it starts.
     store : callable, optional
-        Called with the result, to write it: what is kept of solid bodies is removed after that, not where it fails.
+        Called with the result, to write it: what is kept of solid bodies is removed after that, not where it fails. It gets, and
+        then is returned, a `ltca.output.labelled.LabelledDataset` for plane bodies, which takes no xarray.
 
     Returns
     -------
@@ -134,19 +129,10 @@ def derive_coefficients(
         print(f"{drive.name}: {need.words}", file=sys.stderr)
     if (coarse_walls := places.coarse_walls) is not None:
         print(f"warning: {drive.name}: {coarse_walls}", file=sys.stderr)
-    plane = _Bodies(
-        shapes=shapes,
-        places=places,
-        materials=nominal.materials,
-        wheel_pin=nominal.flank_pin,
-        thickness=nominal.disc.thickness,
-        state=state,
-        tell=progress or (lambda step: None),
-    )
-    coarse = plane.derive(COARSE_RATIO * size, ", twice the size")
-    fine = plane.derive(size, "")
-    disc, _, roller, race = fine
-    dataset = _label(places, places.refined(shapes.disc), *fine)
+    tell = progress or (lambda step: None)
+    derived = _derive(shapes, places, nominal, size, state, tell)
+    disc, _, roller, race = derived
+    dataset = _label(places, places.refined(shapes.disc), *derived)
     if len(shapes.disc.bores) > 1:
         dataset["station_boundary"].attrs["long_name"] = (
             f"0 flank, 1 + c bore c, {1 + len(shapes.disc.bores)} + k hole k"
@@ -159,15 +145,15 @@ def derive_coefficients(
         clearances_left_out=int(not keep_clearance),
         flank_clustering=root_clustering(shapes.disc),
         plane=state,
-        thickness=plane.thickness,
+        thickness=nominal.disc.thickness,
         core_radius=shapes.wheel_pins[0].core_radius,
         race_bore_radius=shapes.inner_race.inner_radius,
         datum=DATUM.format(*["the bore" if len(shapes.disc.bores) == 1 else "all bores together"] * 2),
         unknowns_disc=disc.unknowns,
         mesh_size=f"{size:g}: edge {EDGE_SHARE * size:g} of the patch half-width, growth {GROWTH * size:g}; pins, "
         f"rollers and race {ROUND_SIZE:g} times that",
-        **_convergence(fine, coarse),
-        symmetry=max(body.reciprocity for body in fine),
+        **_convergence(derived),
+        symmetry=max(body.reciprocity for body in derived),
         mirror=max(roller.mirror, race.mirror),
         rigid_residual=disc.rigid_residual,
         roller_radius=shapes.rollers[0].radius,
@@ -178,15 +164,19 @@ def derive_coefficients(
         gmsh=str(load_gmsh().__version__),
         **elastic_constants(nominal.body_materials),
     )
-    keep = store or (lambda derived: None)
-    if bodies == "plane":
-        keep(dataset)
-        return dataset
-    return with_solid_bodies(dataset, nominal, shapes, places, size=size, layers=layers, tell=plane.tell, store=keep)
+    if bodies == "solid":
+        keep = store or (lambda found: None)
+        return with_solid_bodies(
+            dataset.to_xarray(), nominal, shapes, places, size=size, layers=layers, tell=tell, store=keep
+        )
+    if store is None:
+        return dataset.to_xarray()
+    store(dataset)
+    return dataset
 
 
 class _Derived(NamedTuple):
-    """All bodies on meshes of one size."""
+    """All bodies."""
 
     disc: DerivedDisc
     pin: DerivedRound
@@ -194,44 +184,38 @@ class _Derived(NamedTuple):
     race: DerivedRound
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Bodies:
-    """Shapes, materials and options shared by the meshes of both sizes."""
+def _derive(
+    shapes: DriveShapes,
+    places: DiscStations,
+    drive: Drive,
+    size: float,
+    state: PlaneState,
+    tell: Callable[[str], None],
+) -> _Derived:
+    materials, same = drive.materials, _Options(thickness=drive.disc.thickness, state=state, size=size)
+    tell("disc")
+    disc = derive_disc(shapes.disc, places, materials.disc, **same)
+    tell("pin, roller and race")
+    return _Derived(
+        disc=disc,
+        pin=derive_pin(shapes.wheel_pins[0], drive.flank_pin, **same),
+        roller=derive_roller(shapes.rollers[0], materials.roller, **same),
+        race=derive_race(shapes.inner_race, materials.inner_race, **same),
+    )
 
-    shapes: DriveShapes
-    places: DiscStations
-    materials: Materials
-    wheel_pin: Material
+
+class _Options(TypedDict):
+    """Options of every body."""
+
     thickness: float
     state: PlaneState
-    tell: Callable[[str], None]
-
-    def derive(self, size: float, note: str) -> _Derived:
-        shapes, materials = self.shapes, self.materials
-        same: dict[str, Any] = {"thickness": self.thickness, "state": self.state, "size": size}
-        self.tell(f"disc{note}")
-        disc = derive_disc(shapes.disc, self.places, materials.disc, **same)
-        self.tell(f"pin, roller and race{note}")
-        return _Derived(
-            disc=disc,
-            pin=derive_pin(shapes.wheel_pins[0], self.wheel_pin, **same),
-            roller=derive_roller(shapes.rollers[0], materials.roller, **same),
-            race=derive_race(shapes.inner_race, materials.inner_race, **same),
-        )
+    size: float
 
 
-def _convergence(fine: _Derived, coarse: _Derived) -> dict[str, float]:
-    """Changes from the coarser meshes as attributes: the worst, of each body, of the stresses."""
-    disc = (project_rigid_motions(own.disc.approach, own.disc.resultants) for own in (fine, coarse))
-    each = {"convergence_disc": _difference(*disc)}
-    for name, own, other in zip(("pin", "roller", "race"), fine[1:], coarse[1:], strict=True):
-        each[f"convergence_{name}"] = _difference(own.approach, other.approach)
-    worst, stress = max(each.values()), _difference(fine.disc.stress, coarse.disc.stress)
-    return {"convergence_estimate": worst, **each, "convergence_stress": stress}
-
-
-def _difference(values: FloatArray, other: FloatArray) -> float:
-    return float(np.max(np.abs(values - other)) / np.max(np.abs(values)))
+def _convergence(derived: _Derived) -> dict[str, float]:
+    """Estimates of the error of the meshes as attributes: the worst, of each body, of the stresses."""
+    each = {f"convergence_{name}": body.error for name, body in derived._asdict().items()}
+    return {"convergence_estimate": max(each.values()), **each, "convergence_stress": derived.disc.stress_error}
 
 
 def _label(
@@ -241,15 +225,13 @@ def _label(
     pin: DerivedRound,
     roller: DerivedRound,
     race: DerivedRound,
-) -> xr.Dataset:
-    import xarray as xr
-
-    def variable(dimensions: tuple[str, ...], values: object, unit: str, text: str) -> xr.Variable:
-        return xr.Variable(dimensions, np.asarray(values), {"units": unit, "long_name": text})
+) -> LabelledDataset:
+    def variable(dimensions: tuple[str, ...], values: object, unit: str, text: str) -> LabelledArray:
+        return LabelledArray(dimensions, np.asarray(values), {"units": unit, "long_name": text})
 
     angles = 2.0 * np.pi * np.arange(len(race.approach)) / len(race.approach)
     wide = disc.wide_stations
-    return xr.Dataset(
+    return LabelledDataset(
         {
             "station_boundary": variable(("station",), places.boundary, "1", "0 flank, 1 bore, 2 + k hole k"),
             "station_parameter": variable(("station",), places.parameter, "rad", "θ of Eq. 1, or polar angle"),
@@ -293,5 +275,7 @@ def _label(
             "race_approach": variable(("race_angle",), race.approach, "mm/N", "inner race, by a newton at angle 0"),
             "race_half_width": variable((), race.half_width, "mm", "half-width of the patch"),
             "race_wide_approach": variable((), race.wide_approach, "mm/N", "patch twice as wide"),
-        }
+        },
+        (),
+        {},
     )

@@ -90,7 +90,7 @@ def solve_plane(
         fixed[(2 * support.held[:, None] + np.arange(2)).ravel()] = True
         balance = None
     else:
-        fixed[statically_determinate(body, loads)] = True
+        fixed[statically_determinate(body.mesh.doflocs.T, loads)] = True
         balance = rigid_modes(body), support.balance
     unknowns = (2 * order_nodes(body)[:, None] + np.arange(2)).ravel()
     factor = SymmetricFactor(matrix, unknowns[~fixed[unknowns]], many_loads=True)

@@ -15,7 +15,7 @@ from scipy.linalg import eigh
 
 from fem.body.elasticity import area_loads
 from fem.body.free_body import boundary_motion_loads
-from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, WIDE_STEP, edge_growth, estimate_disc_unknowns
+from fem.coefficients.bodies import ROUND_SIZE, WIDE_RATIO, edge_growth, estimate_disc_unknowns
 from fem.coefficients.patch_loads import patch_loads
 from fem.coefficients.pieces import Pieces
 from fem.coefficients.solid_bodies import Differences, SolidOptions, Support, Wall, solid_differences
@@ -93,7 +93,7 @@ class _Places:
     @property
     def wide(self) -> IntArray:
         """Stations that also carry a wider patch."""
-        return np.arange(0, self.stations.count, WIDE_STEP)
+        return self.stations.wide(self.stations.cells(self.shape))
 
     def midway(self) -> FloatArray:
         """Parameters midway between each station and the next on its boundary, rad."""
@@ -342,14 +342,14 @@ def _joined(plane: xr.Dataset, drive: Drive, solid: _Solid, layers: int) -> xr.D
 
 def need_of_solid(shape: DiscShape, places: DiscStations, *, size: float, layers: int) -> SolidNeed:
     """Return what the derivation of a solid disc needs, with that of the plane one on two meshes before it."""
-    wide = len(range(0, places.count, WIDE_STEP))
+    wide = len(places.wide(places.cells(shape)))
     return solid_need(
         shape,
         places.count + wide + MIDWAY,
         size=size,
         growth=edge_growth(size),
         layers=layers,
-        plane_unknowns=sum(estimate_disc_unknowns(shape, places, each) for each in (size, COARSE_RATIO * size)),
+        plane_unknowns=estimate_disc_unknowns(shape, places, size),
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fem.errors import MeshError
+from fem.mesh.disc_parts import FEWEST_CELLS, Cells, circles_alike, lobe_count, lobes_alike
 from fem.shapes import Curve, DiscShape, Shape
 from ltca.arrays import ComplexArray, FloatArray, IntArray
 from ltca.geometry.boundary_stations import clustered_parameter
@@ -35,6 +36,9 @@ PATCH_SHARE = 0.05
 # Stress stations for each station on bore and holes: from station to station interpolation leaves up to 3 % of the
 # largest stress of a disc whose holes leave ligaments of two thirds of their radius.
 STRESS_PER_STATION = 2
+WIDE_STEP = 16
+# A patch twice as wide, up to 0.8 of the distance of stations, stays within its cell.
+FEWEST_IN_CELL = 4
 # Neighbouring patches keep apart, however many stations there are.
 SPACING_SHARE = 0.4
 
@@ -112,7 +116,7 @@ class DiscStations:
             times = STRESS_PER_STATION if index else 1
             parameters.append(_parameters(times * count, shape, index))
             spacing = float(np.abs(np.diff(curve.points(np.append(parameters[-1], 2.0 * np.pi)))).min())
-            widths.append(width if times == 1 else min(width, spacing - width))
+            widths.append(width if times == 1 else _stress_width(width, spacing))
         numbers = [len(own) for own in parameters]
         return DiscStations(
             boundary=np.repeat(np.arange(len(numbers)), numbers),
@@ -121,6 +125,48 @@ class DiscStations:
             normals=np.concatenate([curve.normals(own) for curve, own in zip(shape.curves, parameters, strict=True)]),
             half_width=np.repeat(widths, numbers),
         )
+
+    def cells(self, shape: DiscShape) -> list[Cells]:
+        """Return the walls of a disc that consist of cells alike: the flank of its lobes, circles of a few stations each.
+
+        There are none where patches differ in width.
+        """
+        found: list[Cells] = []
+        if np.ptp(self.half_width) > 0.0:
+            return found
+        if lobes_alike(shape):
+            lobes = lobe_count(shape)
+            last = np.count_nonzero(self.boundary == 0) // lobes // 2
+            found.append(Cells(walls=(0,), count=lobes, cut=float(np.mean(self.parameter[last : last + 2]))))
+        for first, circles in ((1, shape.bores), (1 + len(shape.bores), shape.holes)):
+            own = np.flatnonzero(self.boundary == first)
+            count = _cells_of_circle(len(own))
+            if count and circles_alike(circles):
+                circle, walls = circles[0], range(first, first + len(circles))
+                last, width = own[len(own) // count // 2], float(self.half_width[own[0]])
+                spacing = 2.0 * np.pi / len(own)
+                # Midway between the patch of a station and the arc of the stress station next to it.
+                narrow = _stress_width(width, spacing / STRESS_PER_STATION * circle.radius)
+                gap = 0.5 * (spacing / STRESS_PER_STATION + (width - narrow) / circle.radius)
+                found.append(Cells(walls=tuple(walls), count=count, cut=float(self.parameter[last]) + gap))
+        return found
+
+    def of_cell(self, cells: Cells, copy: int, times: int = 1) -> IntArray:
+        """Return the stations in a copy of a cell; of stations of which `times` as many were there when it was cut."""
+        wall, number = divmod(copy, cells.count)
+        own = np.flatnonzero(self.boundary == cells.walls[wall])
+        each = len(own) // cells.count
+        return own[(times * (each // times // 2) + 1 + each * number + np.arange(each)) % len(own)]
+
+    def wide(self, cells: list[Cells]) -> IntArray:
+        """Return the stations that also carry wider patches: some 16 apart, each in the middle of a cell."""
+        steps = {wall: each.count for each in cells for wall in each.walls}
+        chosen = []
+        for wall in np.unique(self.boundary).tolist():
+            own = np.flatnonzero(self.boundary == wall)
+            each = len(own) // steps[wall] if wall in steps else 1
+            chosen.append(own[:: each * max(round(WIDE_STEP / each), 1)])
+        return np.concatenate(chosen)
 
     @property
     def coarse_walls(self) -> str | None:
@@ -139,6 +185,17 @@ class DiscStations:
         """Return force in x, y and moment about the disc centre of a newton into the disc, shape (3, stations)."""
         inward = -self.normals
         return np.stack([inward.real, inward.imag, (self.points.conjugate() * inward).imag])
+
+
+def _cells_of_circle(stations: int) -> int:
+    """Return of how many cells a bore or hole consists: at least four stations each; 0 where their number has no such divisor."""
+    counts = [count for count in range(FEWEST_CELLS, stations // FEWEST_IN_CELL + 1) if stations % count == 0]
+    return max(counts, default=0)
+
+
+def _stress_width(width: float, spacing: float) -> float:
+    """Return the half-width of the arc of a stress station beside patches of a half-width."""
+    return min(width, spacing - width)
 
 
 def root_clustering(shape: DiscShape) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
 from skfem import MeshTri1
@@ -12,12 +13,28 @@ from skfem import MeshTri1
 from fem.mesh.body_mesh import move_nodes
 from fem.mesh.element_size import Refinement, SizeField, cover_small_edges, nearest_distance
 from fem.shapes import Curve
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 
 # Largest angle α a boundary edge may turn through. Between its nodes, which are exact, a quadratic edge leaves a
 # circle by up to (1 − cos(α/2))²/8 = 9e-6 of the radius; at contacts edges are shorter and the rest is nil.
 MAX_TURN = np.pi / 12.0
 SAMPLES_PER_EDGE = 4.0
+
+
+class Outline(Protocol):
+    """A closed line of edges around a body or a part of one, body on either side."""
+
+    @property
+    def name(self) -> str:
+        """Name of the boundary in the mesh."""
+
+    @property
+    def vertices(self) -> ComplexArray:
+        """First vertex of each edge, mm."""
+
+    @property
+    def middle_points(self) -> ComplexArray:
+        """Mid-side node of each edge, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,14 +54,33 @@ class DividedCurve:
 
     @property
     def middles(self) -> FloatArray:
-        """Parameter of the mid-side node of each edge: halfway along the curve between its vertices."""
-        following = np.append(self.parameters[1:], self.parameters[0] + 2.0 * np.pi)
-        guess = 0.5 * (self.parameters + following)
-        start, end = self.curve.points(self.parameters), self.curve.points(following)
-        # One secant step to equal chords keeps the mapping of the edge even where the parameter is not arc length.
-        middle = self.curve.points(guess)
-        first, second = np.abs(middle - start), np.abs(end - middle)
-        return np.asarray(guess + 0.5 * (following - self.parameters) * (second - first) / (first + second))
+        """Parameter of the mid-side node of each edge."""
+        return middle_parameters(self.curve, np.append(self.parameters, self.parameters[0] + 2.0 * np.pi))
+
+    @property
+    def name(self) -> str:
+        """Name of the boundary in the mesh."""
+        return self.curve.name
+
+    @property
+    def vertices(self) -> ComplexArray:
+        """First vertex of each edge, mm."""
+        return self.curve.points(self.parameters)
+
+    @property
+    def middle_points(self) -> ComplexArray:
+        """Mid-side node of each edge, mm."""
+        return self.curve.points(self.middles)
+
+
+def middle_parameters(curve: Curve, parameters: FloatArray) -> FloatArray:
+    """Return the parameters halfway along a curve between neighbouring vertices, one less than vertices, rad."""
+    start, end = parameters[:-1], parameters[1:]
+    guess = 0.5 * (start + end)
+    # One secant step to equal chords keeps the mapping of the edge even where the parameter is not arc length.
+    middle = curve.points(guess)
+    first, second = np.abs(middle - curve.points(start)), np.abs(curve.points(end) - middle)
+    return np.asarray(guess + 0.5 * (end - start) * (second - first) / (first + second))
 
 
 def sample_parameters(curve: Curve, field: SizeField) -> FloatArray:
@@ -102,12 +138,12 @@ def divide_curve(curve: Curve, field: SizeField, turn: float = MAX_TURN) -> Divi
     return DividedCurve(curve=curve, parameters=np.interp(np.concatenate(pieces), count, parameters))
 
 
-def curve_middles(mesh: MeshTri1, divided: Sequence[DividedCurve]) -> MeshTri1:
+def curve_middles(mesh: MeshTri1, outlines: Sequence[Outline]) -> MeshTri1:
     """Return a quadratic mesh with the mid-side nodes of its boundaries, edge by edge as divided, on the exact curves."""
     doflocs = mesh.doflocs.copy()
-    for line in divided:
-        middles = line.curve.points(line.middles)
-        nodes = mesh.nvertices + mesh.boundaries[line.curve.name]
+    for line in outlines:
+        middles = line.middle_points
+        nodes = mesh.nvertices + mesh.boundaries[line.name]
         doflocs[0, nodes], doflocs[1, nodes] = middles.real, middles.imag
     return move_nodes(mesh, doflocs)
 

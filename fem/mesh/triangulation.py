@@ -15,8 +15,8 @@ import numpy as np
 
 from fem.errors import MeshError
 from fem.mesh.body_mesh import BodyMesh, triangle_mesh
-from fem.mesh.boundary_division import MAX_TURN, DividedCurve, curve_middles, divide_curve, serve_curvature
-from fem.mesh.element_size import DEFAULT_GROWTH, Refinement, SizeField
+from fem.mesh.boundary_division import MAX_TURN, Outline, curve_middles, divide_curve, serve_curvature
+from fem.mesh.element_size import DEFAULT_GROWTH, MANY_BALLS, Refinement, SizeField
 from fem.mesh.gmsh_session import gmsh_model
 from fem.mesh.memory_need import UNKNOWNS_PER_TRIANGLE, mesh_memory, require_memory
 from fem.mesh.quality import require_quality
@@ -43,7 +43,7 @@ def estimate_unknowns(
     turn: float = MAX_TURN,
 ) -> int:
     """Return the number of unknowns to expect of a mesh, without making it (see `SizeField`)."""
-    field = _size_field(shape, tuple(refinements), coarse_size, growth, turn)
+    field = size_field(shape, tuple(refinements), coarse_size, growth, turn)
     return int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
 
 
@@ -137,9 +137,10 @@ def mesh_pin_ring(
 
 # A drive asks for the field of each body to estimate its memory, alone and in all, and to mesh it.
 @functools.lru_cache(maxsize=256)
-def _size_field(
+def size_field(
     shape: Shape, refinements: tuple[Refinement, ...], coarse_size: float | None, growth: float, turn: float
 ) -> SizeField:
+    """Return the size field of a body with edges that turn by no more than an angle, rad, on its boundaries."""
     coarse = default_coarse_size(shape) if coarse_size is None else coarse_size
     field = SizeField(balls=refinements, coarse_size=coarse, growth=growth)
     return serve_curvature(shape.curves, field, turn)
@@ -155,35 +156,37 @@ def _mesh_shape(
 ) -> BodyMesh:
     if order not in (1, 2):
         raise MeshError(f"element order {order} of the mesh of {shape.name}: must be 1 or 2")
-    field = _size_field(shape, tuple(refinements), coarse_size, growth, turn)
+    field = size_field(shape, tuple(refinements), coarse_size, growth, turn)
     unknowns = int(UNKNOWNS_PER_TRIANGLE[order] * field.estimate_triangles(shape.area))
     require_memory(unknowns, mesh_memory(unknowns), f"the mesh of {shape.name}")
-    divided = [divide_curve(curve, field, turn) for curve in shape.curves]
-    places, triangles = _fill_interior(shape.name, divided, field)
+    return mesh_within(shape.name, [divide_curve(curve, field, turn) for curve in shape.curves], field, order)
+
+
+def mesh_within(name: str, outlines: Sequence[Outline], field: SizeField, order: int = 2) -> BodyMesh:
+    """Mesh what some outlines bound, the outer one first; MeshError when gmsh fails or the mesh is bad."""
+    places, triangles = _fill_interior(name, [line.vertices for line in outlines], field)
     edges: dict[str, IntArray] = {}
     first = 0
-    for line in divided:
-        nodes = first + np.arange(len(line.parameters))
-        edges[line.curve.name] = np.column_stack([nodes, np.roll(nodes, -1)])
+    for line in outlines:
+        nodes = first + np.arange(len(line.vertices))
+        edges[line.name] = np.column_stack([nodes, np.roll(nodes, -1)])
         first += len(nodes)
     mesh = triangle_mesh(np.vstack([places.real, places.imag]), triangles, edges, order=order)
     if order == 2:
-        mesh = curve_middles(mesh, divided)
-    body = BodyMesh(name=shape.name, mesh=mesh)
+        mesh = curve_middles(mesh, outlines)
+    body = BodyMesh(name=name, mesh=mesh)
     body.require_complete_boundaries()
     require_quality(body)
     return body
 
 
-def _fill_interior(name: str, divided: Sequence[DividedCurve], field: SizeField) -> tuple[ComplexArray, IntArray]:
-    """Return vertices (those of the boundary first, curve by curve) and counter-clockwise triangles."""
+def _fill_interior(name: str, boundary: Sequence[ComplexArray], field: SizeField) -> tuple[ComplexArray, IntArray]:
+    """Return vertices (those of the boundary first, outline by outline) and counter-clockwise triangles."""
     with gmsh_model(name) as gmsh:
-        loops, boundary = [], []
+        loops = []
         count = 0
-        for line in divided:
-            points = line.curve.points(line.parameters)
+        for points in boundary:
             loops.append(gmsh.model.geo.addCurveLoop([_add_boundary(gmsh, points, count + 1)]))
-            boundary.append(points)
             count += len(points)
         gmsh.model.geo.addPlaneSurface(loops)
         gmsh.model.geo.synchronize()
@@ -226,21 +229,19 @@ def _add_boundary(gmsh: ModuleType, points: ComplexArray, first: int) -> int:
 
 
 def _set_size_field(gmsh: ModuleType, field: SizeField) -> None:
-    balls = []
-    for ball in field.balls:
-        tag = gmsh.model.mesh.field.add("Ball")
-        values = {
-            "XCenter": ball.x,
-            "YCenter": ball.y,
-            "ZCenter": 0.0,
-            "Radius": ball.radius,
-            "Thickness": max(field.coarse_size - ball.size, 0.0) / field.growth,
-            "VIn": min(ball.size, field.coarse_size),
-            "VOut": field.coarse_size,
+    fields = []
+    for ball, centres in field.balls_alike():
+        zone = {
+            "inner": min(ball.size, field.coarse_size),
+            "outer": field.coarse_size,
+            "width": max(field.coarse_size - ball.size, 0.0) / field.growth,
         }
-        for key, value in values.items():
-            gmsh.model.mesh.field.setNumber(tag, key, value)
-        balls.append(tag)
+        many = len(centres) >= MANY_BALLS and zone["width"] > 0.0
+        fields += (
+            _field_of_many(gmsh, centres, ball.radius, zone)
+            if many
+            else _fields_of_few(gmsh, centres, ball.radius, zone)
+        )
     options = {
         "Mesh.MeshSizeExtendFromBoundary": 0,
         "Mesh.MeshSizeFromPoints": 0,
@@ -252,7 +253,45 @@ def _set_size_field(gmsh: ModuleType, field: SizeField) -> None:
     }
     for key, value in options.items():
         gmsh.option.setNumber(key, value)
-    if balls:
+    if fields:
         smallest = gmsh.model.mesh.field.add("Min")
-        gmsh.model.mesh.field.setNumbers(smallest, "FieldsList", balls)
+        gmsh.model.mesh.field.setNumbers(smallest, "FieldsList", fields)
         gmsh.model.mesh.field.setAsBackgroundMesh(smallest)
+
+
+def _fields_of_few(gmsh: ModuleType, centres: ComplexArray, radius: float, zone: dict[str, float]) -> list[int]:
+    """Add a field for each ball; return their tags."""
+    tags = []
+    for centre in centres.tolist():
+        tag = gmsh.model.mesh.field.add("Ball")
+        values = {
+            "XCenter": centre.real,
+            "YCenter": centre.imag,
+            "ZCenter": 0.0,
+            "Radius": radius,
+            "Thickness": zone["width"],
+            "VIn": zone["inner"],
+            "VOut": zone["outer"],
+        }
+        for key, value in values.items():
+            gmsh.model.mesh.field.setNumber(tag, key, value)
+        tags.append(tag)
+    return tags
+
+
+def _field_of_many(gmsh: ModuleType, centres: ComplexArray, radius: float, zone: dict[str, float]) -> list[int]:
+    """Add one field by the distance to the nearest centre, which gmsh finds in a tree; return its tag."""
+    points = [gmsh.model.geo.addPoint(centre.real, centre.imag, 0.0) for centre in centres.tolist()]
+    gmsh.model.geo.synchronize()
+    distance, tag = gmsh.model.mesh.field.add("Distance"), gmsh.model.mesh.field.add("Threshold")
+    gmsh.model.mesh.field.setNumbers(distance, "PointsList", points)
+    values = {
+        "InField": distance,
+        "DistMin": radius,
+        "DistMax": radius + zone["width"],
+        "SizeMin": zone["inner"],
+        "SizeMax": zone["outer"],
+    }
+    for key, value in values.items():
+        gmsh.model.mesh.field.setNumber(tag, key, value)
+    return [tag]

@@ -1,7 +1,7 @@
 """Files of influence coefficients: the user's, or derived once for each distinct shape and kept.
 
-`ltca` reads files only: `fem` registers a function in the entry-point group ``cyclo.derivations``, of a drive, ``state`` or
-``bodies``, ``store`` (of solid bodies) and ``processes``, that returns the dataset of docs/theory/coefficients.md.
+`ltca` reads files only: `fem` registers a function in the entry-point group ``cyclo.derivations``, of a drive, ``bodies``,
+``store`` and ``processes``, that hands the dataset of docs/theory/coefficients.md to ``store``.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from ltca.output.threads import on_one_thread
 from ltca.reading.coefficient_file import require_laws, write_coefficients
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from ltca.output.labelled import Labelled
 
 GROUP = "cyclo.derivations"
 DERIVATION = "finite-elements"
 SHIPPED = Path(__file__).parents[1] / "drives" / "coefficients"
 """Files of shipped drives (``python benchmarks/shipped_coefficients.py``)."""
 MAX_DERIVATIONS = 2
-"""Most derivations at the same time: one takes 1.0 GB for a disc like the paper's, 3.1 GB with 99 teeth."""
-SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 0.8, 0.28, 0.45, 0.5
-"""Time of a derivation on one core, s: the mesh is fine along the boundaries and the rest follows its size."""
+"""Most derivations at the same time: one takes 0.4 GB for a disc like the paper's, 1.1 GB with 198 teeth."""
+SECONDS, SECONDS_PER_TOOTH, SECONDS_PER_HOLE, SECONDS_PER_BORE = 3.0, 0.08, 0.05, 0.1
+"""Time of a derivation on one core, s: mostly fixed, then by the number of loads."""
 
 
 def cached_file(drive: Drive, bodies: Bodies = "plane") -> Path:
@@ -222,15 +222,12 @@ def _processes(derivations: int, bodies: Bodies) -> int:
 def _derive_file(drive: Drive, path: Path, processes: int, bodies: Bodies) -> None:
     """Derive the coefficients of one drive into a file, one of some processes that share the memory."""
 
-    def store(dataset: xr.Dataset) -> None:
+    def store(dataset: Labelled) -> None:
         require_laws(dataset, str(path))
         write_coefficients(dataset, path)
 
-    if bodies == "solid":
-        # Hours of work are kept until its file stands.
-        derivation()(drive, bodies=bodies, processes=processes, store=store)
-    else:
-        store(derivation()(drive, state="strain", processes=processes))
+    # Hours of work on solid bodies are kept until its file stands.
+    derivation()(drive, bodies=bodies, processes=processes, store=store)
 
 
 def derivation(name: str = DERIVATION) -> Callable[..., Any]:

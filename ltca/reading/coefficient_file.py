@@ -21,6 +21,7 @@ from ltca.errors import CycloError, DamagedFileError, PlaceError
 from ltca.geometry.flank import FlankProfile
 from ltca.geometry.placement import Placement
 from ltca.output.files import whole_file
+from ltca.output.labelled import LabelledDataset
 from ltca.output.netcdf import DAMAGE, opened_hdf5, read_netcdf, write_netcdf
 from ltca.reading.coefficient_laws import (
     INTERPOLATION,
@@ -41,9 +42,7 @@ from ltca.reading.coefficient_schema import (
 )
 
 if TYPE_CHECKING:
-    import xarray as xr
-
-    from ltca.output.labelled import Labelled, LabelledDataset
+    from ltca.output.labelled import Labelled
 
 CHECKSUM = "checksum"
 PACKED = ("disc_approach", "disc_stress")
@@ -61,15 +60,17 @@ PLACE_TOLERANCE = 1e-3
 """Largest misplacement of a station relative to a half-width: coefficients change by that part of the near field's unit."""
 
 
-def write_coefficients(dataset: xr.Dataset, path: Path) -> Path:
+def write_coefficients(dataset: Labelled, path: Path) -> Path:
     """Write coefficients (``docs/theory/coefficients.md``) with a checksum, and return the path; the folder is made.
 
     FaultError when the file cannot be written.
     """
-    packed = [name for name in PACKED if name in dataset]
-    kept = dataset.assign({name: dataset[name].copy(data=_kept_bits(dataset[name].values)) for name in packed})
+    kept = dataset if isinstance(dataset, LabelledDataset) else LabelledDataset.of(dataset)
+    packed = [name for name in PACKED if name in kept]
+    fewer = {name: replace(kept[name], values=_kept_bits(kept[name].values)) for name in packed}
+    kept = replace(kept, variables=kept.variables | fewer)
     with whole_file(path) as part:
-        write_netcdf(kept.assign_attrs({CHECKSUM: checksum_of(kept)}), part, packed)
+        write_netcdf(replace(kept, attrs=kept.attrs | {CHECKSUM: checksum_of(kept)}), part, packed)
     return path
 
 
