@@ -22,7 +22,7 @@ from fem.shapes import DriveShapes
 from fem.solid_contact.reliefs import relief_of
 from fem.solid_drive.along_width import DriveWidths
 from fem.solid_drive.solid_bodies import condense_solids
-from fem.solid_drive.width_results import along_width, bore_lean, disc_lean, roller_leans
+from fem.solid_drive.width_results import along_width, bore_lean, disc_lean, pressures_over, roller_leans
 from ltca.drive.parts import Material
 from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
@@ -252,10 +252,11 @@ class TestLeaning:
             rtol=1e-6,
             atol=1e-10,
         )
-        for there, here in zip(along_width(model, state), along_width(leaning.model, leaning.state), strict=True):
-            np.testing.assert_allclose(
-                there.pressure, here.pressure[:, ::-1], atol=1e-6 * max(here.pressure.max(), 1.0)
+        for pair in model.pairs:
+            (_, there), (_, here) = (
+                pressures_over(solution(*own), pair) for own in ((model, state), (leaning.model, leaning.state))
             )
+            np.testing.assert_allclose(there, here[:, ::-1], atol=1e-6 * max(here.max(), 1.0))
 
     def test_aligned_parts_tilt_nothing(self, leaning):
         model = standing(leaning.model, plastic())
