@@ -25,9 +25,8 @@ import ltca
 from fem.drive.condensed import condense_drive
 from fem.drive.contact_results import ContactResults, summarise_contacts
 from fem.drive.pose import solve_pose
-from fem.solid_drive.along_width import plane_part
-from fem.solid_drive.solid_model import SolidModel
-from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
+from fem.options import SolutionOptions
+from fem.reducer.solution import solve_reducer
 from fem.solid_drive.width_results import bore_lean
 from ltca.geometry.placement import Placement
 from ltca.reading.drive_file import load_drive
@@ -62,18 +61,18 @@ def main() -> None:
     cases = load_drive(arguments.drive).cases
     drives = {"leaning": cases[arguments.leaning], "aligned": cases[arguments.aligned]}
     clock = time.process_time()
-    options = SolidOptions(size=arguments.size, layers=arguments.layers)
-    solid = solve_solid_disc(drives["leaning"], arguments.angle, options)
+    options = SolutionOptions(size=arguments.size, layers=arguments.layers)
+    (solid,) = solve_reducer(drives["leaning"], arguments.angle, options).discs
     moment, model = solid.state.wheel_moment, solid.model
-    plane = condense_drive(plane_part(model.drive), model.shapes, model.contacts, model.meshes)
+    plane = condense_drive(model.drive, model.shapes, model.contacts, model.meshes)
     flat = solve_pose(plane, moment, start=solid.pose, pose_tolerance=POSE_TOLERANCE)
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
-    print(f"finite elements: {model.solid_unknowns:,} unknowns, {time.process_time() - clock:.0f} s, {most:.2g} GB")
+    print(f"finite elements: {solid.unknowns:,} unknowns, {time.process_time() - clock:.0f} s, {most:.2g} GB")
     print(f"{'case':<9}{'LTCA':<8}{'bodies':<8}{'wheel':>8}{'pins':>8}{'rollers':>9}{'holes':>8}{'tilt':>8}   per cent")
     for case, drive in drives.items():
-        own: SolidModel = replace(model, drive=drive, placement=Placement.of_drive(drive))
+        own = replace(model, drive=drive, placement=Placement.of_drive(drive))
         state = solve_pose(own, moment, start=solid.pose, pose_tolerance=POSE_TOLERANCE)
-        contacts, lean = summarise_contacts(own, state), bore_lean(own, state)
+        contacts, lean = summarise_contacts(own, state), bore_lean(replace(solid, model=own, state=state))
         for compliance in ("fe", "hybrid"):
             for bodies in ("solid", "plane"):
                 found = ltca.analyse(

@@ -23,8 +23,11 @@ sys.path[0] = str(Path(__file__).resolve().parents[1])  # the package fem, not t
 from fem.body.elasticity import PlaneState
 from fem.drive.condensed import condense_drive
 from fem.drive.contact_results import ContactResults, summarise_contacts
+from fem.drive.full_solution import FullSolution
 from fem.drive.pose import solve_pose
-from fem.solid_drive.solved_disc import SolidOptions, SolidSolution, solve_solid_disc
+from fem.options import SolutionOptions
+from fem.reducer.solution import solve_reducer
+from fem.solid_drive.width_results import width_results
 from ltca.drive.parts import Drive
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
@@ -46,7 +49,7 @@ def widened(drive: Drive, width: float) -> Drive:
     return with_fields(drive, fields)
 
 
-def in_the_plane(solid: SolidSolution, state: PlaneState) -> tuple[float, ContactResults]:
+def in_the_plane(solid: FullSolution, state: PlaneState) -> tuple[float, ContactResults]:
     """Return wheel angle, rad, and contacts of the plane drive on the sections of a solid one."""
     model = solid.model
     plane = condense_drive(model.drive, model.shapes, model.contacts, model.meshes, plane=state)
@@ -66,10 +69,10 @@ def largest(contacts: ContactResults) -> np.ndarray:
     )
 
 
-def compare(drive: Drive, angle: float, options: SolidOptions) -> str:
+def compare(drive: Drive, angle: float, options: SolutionOptions) -> str:
     """Return the row of one drive."""
     clock = time.process_time()
-    solid = solve_solid_disc(drive, angle, options)
+    (solid,) = solve_reducer(drive, angle, options).discs
     settled = solve_pose(solid.model, solid.state.wheel_moment, start=solid.pose, pose_tolerance=POSE_TOLERANCE)
     solid = replace(solid, state=settled, contacts=summarise_contacts(solid.model, settled))
     own, own_angle = largest(solid.contacts), settled.pose.wheel_angle
@@ -80,10 +83,10 @@ def compare(drive: Drive, angle: float, options: SolidOptions) -> str:
         values = [plane_angle / own_angle, *(largest(contacts)[:3] / own[:3]), largest(contacts)[3] / own[3]]
         row += " |" + "".join(f"{100.0 * (value - 1.0):+8.2f}" for value in values)
     between = (own_angle - angles[0]) / (angles[1] - angles[0])
-    pins = [each for pair, each in zip(solid.model.pairs, solid.along_width, strict=True) if pair.kind == "pin"]
+    pins = [each for pair, each in zip(solid.model.pairs, width_results(solid), strict=True) if pair.kind == "pin"]
     factor = max(pins, key=lambda each: each.load).load_factor
     seconds = time.process_time() - clock
-    return f"{row} | {factor:6.3f} {between:8.2f} {solid.model.solid_unknowns:>9,} {seconds:8.0f}"
+    return f"{row} | {factor:6.3f} {between:8.2f} {solid.unknowns:>9,} {seconds:8.0f}"
 
 
 def main() -> None:
@@ -99,7 +102,7 @@ def main() -> None:
     )
     parser.add_argument("--layers", type=int, default=4, help="over half of the width; default 4")
     arguments = parser.parse_args()
-    options = SolidOptions(size=arguments.size, layers=arguments.layers)
+    options = SolutionOptions(size=arguments.size, layers=arguments.layers)
     columns = "".join(f"{name:>8}" for name in ("wheel", "pin", "roller", "hole", "p pin"))
     print(f"{'drive':<14}{'mm':>6} | plane strain, % of solid{columns[25:]:>15} | plane stress")
     print(f"{'':<20} |{columns} |{columns} | {'K_Hβ':>6} {'between':>8} {'unknowns':>9} {'CPU, s':>8}")

@@ -8,14 +8,14 @@ shapes                Exact shape of each body of a drive: closed curves with na
 mesh                  Meshes of single bodies: size field, triangulation, quality, files
 body                  One meshed body: elasticity, its boundary zones, its compliance, its stresses
 solid                 Extruded bodies in three dimensions: layers, stiffness, factors
-options               Options of a full solution: element size, plane state, fine walls
+options               Options of a full solution: element size, plane state, fine walls, layers of solid bodies
 discretisation_error  Error of a figure by the size of the elements, from solutions on at least three meshes
 contact               Contact between condensed bodies: mortar integrals of a pair and pressures that never pull
-drive                 One disc with wheel, crank and pin shaft at one crank angle: expected contacts, graded meshes, condensed
-                      model, loaded pose, results
+drive                 Discs with wheel, cranks and pin shaft at one crank angle: expected contacts, graded meshes, condensed
+                      models, loaded poses, results
 solid_contact         Contact between extruded bodies in three dimensions: pressures over arc and width
-reducer               All discs of a drive on one wheel, either member held, and the files of a solution
-solid_drive           One disc of solid bodies with all its contacts: pressures over arc and width, tilts, its files
+solid_drive           Discs of solid bodies with all their contacts: pressures over arc and width, tilts
+reducer               All discs of a drive on one wheel, plane or solid, either member held, and the files of a solution
 coefficients          Influence coefficients of the bodies: places, loads, derivation
 referee               The same problem given to another code
 pictures              Pictures of meshes and solutions

@@ -27,6 +27,8 @@ class SolutionOptions:
         Growth of the element edge by distance from a contact.
     halvings : int
         Uniform refinements of the meshes of that size: every edge is divided into two each time.
+    layers : int
+        Of solid bodies, over half of their width; 0 of plane ones.
 
     Raises
     ------
@@ -44,6 +46,7 @@ class SolutionOptions:
     fine_walls: bool = False
     growth: float = DEFAULT_GROWTH
     halvings: int = 0
+    layers: int = 0
 
     @property
     def refined_size(self) -> float:

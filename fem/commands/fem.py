@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem.commands.position_arguments import add_position_arguments, body_files, chosen_case, disc_prefix
-from fem.commands.solid_disc import add_disc_arguments, execute_disc
 from fem.commands.solid_pair import add_pair_arguments, execute_pair, refuse_mixed_options
+from fem.solid.layer_count import FEWEST_LAYERS, MOST_LAYERS
 from ltca.errors import CycloError
 from ltca.reading.arguments import (
     add_out_argument,
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from fem.drive.full_solution import FullSolution
+    from fem.options import SolutionOptions
     from fem.reducer.nested_meshes import NestedSolution
     from fem.reducer.solution import ReducerSolution
     from ltca.drive.members.judgement import Check
@@ -84,8 +85,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--referee", choices=("calculix",), help="let another code solve the same problem and print both side by side"
     )
     add_pair_arguments(parser)
-    add_disc_arguments(parser)
-    # A disc of solid bodies has another default.
+    group = parser.add_argument_group("all discs as solid bodies (--bodies solid)")
+    group.add_argument(
+        "--layers",
+        metavar="N",
+        type=count_argument("--layers", FEWEST_LAYERS, MOST_LAYERS),
+        help="layers of elements over half of the width, thinner towards the ends; default 4 (--size is 3 by default)",
+    )
+    # Solid discs have another default.
     parser.set_defaults(size=None)
 
 
@@ -105,13 +112,12 @@ def execute(arguments: argparse.Namespace) -> int:
     from ltca.output.run_folder import claimed_folder
 
     refuse_mixed_options(arguments)
-    if arguments.bodies == "solid" and arguments.pair is None:
-        return execute_disc(arguments)
-    arguments.size = arguments.size or 1.0
-    if arguments.bodies == "solid":
+    if arguments.pair is not None:
+        arguments.size = arguments.size or 1.0
         return execute_pair(arguments)
     _require_options(arguments)
-    arguments.plane = arguments.plane or "strain"
+    options = _options(arguments)
+    bodies = "solid bodies" if options.layers else f"plane {options.plane}"
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
     name = file.name
@@ -119,7 +125,7 @@ def execute(arguments: argparse.Namespace) -> int:
     if arguments.export or referee:
         _require_deck(drive, "--referee" if referee else "--export")
     discs = drive.disc.number_of_discs
-    writes = ["fem.nc", "fem.vtm", "summary.json", *body_files("vtu", discs)]
+    writes = ["fem.nc", "summary.json", *([] if options.layers else ["fem.vtm", *body_files("vtu", discs)])]
     writes += [] if arguments.no_page else ["report.html"]
     own = ["von_mises.png", "contacts.png", "deformed.png"] if arguments.pictures else []
     own += ["calculix.inp"] if arguments.export or referee else []
@@ -127,14 +133,14 @@ def execute(arguments: argparse.Namespace) -> int:
     writes += [f"{disc_prefix(disc, discs)}{file}" for disc in range(discs) for file in own]
     with claimed_folder(out, "fem", writes=writes):
         solution, checks, pictures, nested = _solve_and_write(
-            name, case, drive, file.limits[case], arguments, out, referee
+            name, case, drive, file.limits[case], arguments, options, out, referee
         )
         if not arguments.no_page:
             from fem.pictures.drive_loads import draw_loads
             from fem.reducer.solution_page import solution_page
             from ltca.page.study_page import write_study_page
 
-            words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, plane {arguments.plane}"
+            words = f"case {case}, {drive.load_words(arguments.torque)}, full finite elements, {bodies}"
             page = solution_page(solution, checks, case, words, file.text, draw_loads(solution), pictures, nested)
             write_study_page(page, out)
     return 0
@@ -158,46 +164,43 @@ def _solve_and_write(
     drive: Drive,
     limits: Limits,
     arguments: argparse.Namespace,
+    options: SolutionOptions,
     out: Path,
     referee: Callable[[FullSolution, Path], None] | None,
 ) -> tuple[ReducerSolution, list[Check], list[Sequence[Picture]], NestedSolution | None]:
     from fem.drive.fields import recover_fields
     from fem.reducer.solution_files import write_solution
+    from fem.reducer.solution_words import tabulate
     from ltca.drive.members.verdict_words import verdict_table
     from ltca.output.progress import steps
 
     title = f"{name}, {case}, {arguments.angle:g} rad"
     with steps() as show:
-        solution, nested = _solve(drive, arguments, show)
+        solution, nested = _solve(drive, arguments, options, show)
         show("files")
-        fields = [recover_fields(disc) for disc in solution.discs]
+        fields = [] if solution.solid else [recover_fields(disc) for disc in solution.discs]
         checks = write_solution(solution, fields, case, out, limits, nested)
-    load = drive.load_words(arguments.torque)
-    print(
-        f"{name} {case}, {load}, full finite elements, plane {arguments.plane}: 1 position, φ_C = {arguments.angle:g} rad"
-    )
+    load, bodies = drive.load_words(arguments.torque), "solid bodies" if solution.solid else f"plane {options.plane}"
+    print(f"{name} {case}, {load}, full finite elements, {bodies}: 1 position, φ_C = {arguments.angle:g} rad")
     if told := ring_words(drive):
         print(told)
     count, problem = len(solution.discs), ""
     pictures: list[Sequence[Picture]] = []
-    for number, disc in enumerate(solution.discs):
-        if count > 1:
-            share = solution.torque_share[number]
-            print(f"disc {number}, {disc.state.wheel_moment / 1e3:.6g} N·m on the wheel, {100.0 * share:.2f} % of it")
-        _print_contacts(disc)
-        if arguments.pictures:
-            from fem.pictures.solution_pictures import draw_solution
+    if arguments.pictures:
+        from fem.pictures.solution_pictures import draw_solution
 
+        for number, disc in enumerate(solution.discs):
             headline = title if count == 1 else f"{title}, disc {number}"
             problem, drawn = draw_solution(disc, fields[number], headline, out, prefix=disc_prefix(number, count))
             pictures.append(drawn)
-    _print_drive(solution)
+    print(*tabulate(solution), sep="\n")
     if nested is not None:
         from fem.reducer.error_table import error_lines
 
         print(*error_lines(nested), sep="\n")
-    print("verdict by full finite elements at this position")
-    print(verdict_table([check for check in checks if check.limit is not None]))
+    if not solution.solid:
+        print("verdict by full finite elements at this position")
+        print(verdict_table([check for check in checks if check.limit is not None]))
     if problem:
         print(f"drawn with matplotlib, because pyvista cannot render here: {problem}")
     for number, disc in enumerate(solution.discs):
@@ -212,13 +215,23 @@ def _solve_and_write(
     return solution, checks, pictures, nested
 
 
-def _solve(
-    drive: Drive, arguments: argparse.Namespace, show: Callable[[str], None]
-) -> tuple[ReducerSolution, NestedSolution | None]:
-    """Solve the drive, on nested meshes where error bars are asked for."""
+def _options(arguments: argparse.Namespace) -> SolutionOptions:
+    """Return the options of the solution, whose defaults are others for solid bodies."""
     from fem.options import SolutionOptions
 
-    options = SolutionOptions(size=arguments.size, plane=arguments.plane, fine_walls=arguments.fine_walls)
+    if arguments.bodies == "solid":
+        from fem.solid_drive.solved_discs import DEFAULT_LAYERS, DEFAULT_SIZE
+
+        return SolutionOptions(size=arguments.size or DEFAULT_SIZE, layers=arguments.layers or DEFAULT_LAYERS)
+    return SolutionOptions(
+        size=arguments.size or 1.0, plane=arguments.plane or "strain", fine_walls=arguments.fine_walls
+    )
+
+
+def _solve(
+    drive: Drive, arguments: argparse.Namespace, options: SolutionOptions, show: Callable[[str], None]
+) -> tuple[ReducerSolution, NestedSolution | None]:
+    """Solve the drive, on nested meshes where error bars are asked for."""
     if not arguments.error:
         from fem.reducer.solution import solve_reducer
 
@@ -247,6 +260,7 @@ def _require_deck(drive: Drive, option: str) -> None:
         "pin_wheel.beam": drive.pin_wheel.beam,
         "pin_shaft.beam": None if shaft is None else shaft.beam,
         "pin_wheel.support_stiffness": drive.pin_wheel.support_stiffness,
+        "pin_wheel.axis_offset": drive.pin_wheel.axis_offset if drive.pin_wheel.axis_offset.place else None,
         "main_bearing": drive.main_bearing,
         "crank.support": drive.crank.support,
         "carrier.posts": drive.posts,
@@ -254,27 +268,6 @@ def _require_deck(drive: Drive, option: str) -> None:
     said = f"must be left out for {option} calculix, whose deck has a rigid wheel, rigid cranks and pins on springs"
     if found := [f"{path}: {said}" for path, value in given.items() if value is not None]:
         raise DriveError(found)
-
-
-def _print_contacts(solution: FullSolution) -> None:
-    from fem.drive.contact_kinds import CONTACT_KINDS
-
-    cranks = solution.model.placement.cranks
-    print(f"{'contact':<24}{'load, N':>10}{'peak, MPa':>11}{'half-width, µm':>16}")
-    for kind, index, load, peak, width in solution.contacts.loaded:
-        name = CONTACT_KINDS[kind].name_of(index, solution.model.placement)
-        print(f"{name:<24}{load:>10.1f}{peak:>11.1f}{1e3 * width:>16.1f}")
-    for crank, (radial, tangential) in enumerate(solution.bearing_components.tolist()):
-        which = "" if cranks == 1 else f" at crank {crank}"
-        print(f"bearing force on the disc{which}: radial {radial:.1f} N, tangential {tangential:.1f} N")
-
-
-def _print_drive(solution: ReducerSolution) -> None:
-    if solution.drive.wheel_is_held:
-        print(f"moment on the held wheel {solution.wheel_moment / 1e3:.6g} N·m")
-    print(f"wheel angle {solution.wheel_angle:.6g} rad; largest unbalanced force {solution.equilibrium_residual:.1e} N")
-    iterations = " + ".join(str(disc.pose_iterations) for disc in solution.discs)
-    print(f"{solution.unknowns:,} unknowns, {iterations} pose iterations, {solution.seconds['total']:.1f} s")
 
 
 def _referee(name: str | None) -> Callable[[FullSolution, Path], None] | None:

@@ -61,7 +61,7 @@ def condense_drive(
     )
     pairs = list_pairs(shapes, contacts, meshes, place, places, thickness=slab.thickness)
     on_disc = sum(pair.kind != "roller_inner" for pair in pairs)
-    race_loads, first_of_each = _distinct_loads(pairs[on_disc:])
+    race_loads, first_of_each = distinct_loads(pairs[on_disc:])
     return DriveModel(
         drive=drive,
         crank_angle=contacts.crank_angle,
@@ -184,7 +184,7 @@ def _condense_carrier(
     return _condense(body, loads if among is None else loads[:, among], material, slab, held)
 
 
-def _distinct_loads(pairs: list[ContactPair]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def distinct_loads(pairs: list[ContactPair]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Return the unit load of each pressure unknown of the inner races, and of each unit load its first unknown.
 
     Rollers of several cranks press on the same places of one body that stands for all races: the load about a vertex

@@ -11,7 +11,7 @@ from fem.body.surface import PressureZone
 from fem.contact.pressure_measures import peak_of, pressure_moments
 from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.model import ContactPair, PlacedContacts
-from fem.drive.pose import PoseSolution, pair_forces
+from fem.drive.pose import PoseSolution, moment_about, pair_forces
 from ltca.arrays import FloatArray
 
 
@@ -219,18 +219,17 @@ def _detail(pair: ContactPair, pressure: FloatArray, load: float, largest: float
 def _residual(model: PlacedContacts, solution: PoseSolution, forces: FloatArray) -> float:
     """Return the largest unbalanced force, N, from the forces alone: nothing of the solver enters."""
     disc = np.zeros(3)
-    wheel = solution.wheel_moment
+    wheel, axis = solution.wheel_moment, complex(model.placement.wheel_axis)
     along: dict[int, float] = {}
     for pair, acting in zip(model.pairs, forces, strict=True):
         if pair.kind != "roller_inner":
             disc -= acting
         if pair.kind == "pin":
-            wheel += acting[2]
+            wheel += moment_about(axis, acting)
         if pair.kind in ("roller_outer", "roller_inner"):
             ray = model.roller_rays[pair.index]
             along[pair.index] = along.get(pair.index, 0.0) + acting[0] * ray.real + acting[1] * ray.imag
-    centre = model.disc_pose(solution.pose).centre
-    moment = disc[2] - (centre.real * disc[1] - centre.imag * disc[0])
+    moment = moment_about(model.disc_pose(solution.pose).centre, disc)
     lever = float(np.abs(model.placement.wheel_pin_centres).max())
     left = [abs(disc[0]), abs(disc[1]), abs(moment) / lever, abs(wheel) / lever, *map(abs, along.values())]
     return float(max(left))

@@ -66,7 +66,7 @@ class DiscStress:
 
 def recover_disc_stress(solution: FullSolution) -> DiscStress:
     """Return the stress in the disc of a full solution."""
-    model = solution.model
+    model = solution.plane
     body, shape = model.meshes.disc, model.shapes.disc
     displacement = model.disc_displacement(solution.state.contact.pressure)
     stress = recover_stress(body, displacement, model.drive.materials.disc, state=solution.options.plane)

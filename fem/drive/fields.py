@@ -69,7 +69,7 @@ class BodyField:
 
 def recover_fields(full: FullSolution) -> tuple[BodyField, ...]:
     """Return the fields of disc, wheel pins, rollers, elastic shaft pins, and then the inner race of each crank."""
-    model, solution = full.model, full.state
+    model, solution = full.plane, full.state
     pressure = solution.contact.pressure
     meshes, materials, pose = model.meshes, model.drive.materials, solution.pose
     ideal = model.start_pose((0.0, 0.0, 0.0, 0.0))
@@ -167,29 +167,8 @@ def turn_stress(stress: Stress, angle: float) -> Stress:
     )
 
 
-def fit_rigid_motion(places: ComplexArray, displacement: ComplexArray, weight: FloatArray) -> tuple[complex, float]:
-    """Return the translation of the origin (mm) and rotation (rad) that fit weighted displacements best (least squares)."""
-    x, y, one = places.real, places.imag, np.ones(len(places))
-    rows = np.vstack([np.column_stack([one, 0 * one, -y]), np.column_stack([0 * one, one, x])])
-    root = np.sqrt(np.concatenate([weight, weight]))
-    right = np.concatenate([displacement.real, displacement.imag])
-    found, *_ = np.linalg.lstsq(rows * root[:, None], right * root, rcond=None)
-    return complex(found[0], found[1]), float(found[2])
-
-
 def bore_motion(full: FullSolution) -> tuple[complex, float]:
     """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to its bore circle, or to all of them."""
-    model, solution = full.model, full.state
-    body = model.meshes.disc
-    chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
-    nodes = body.places
-    u = model.disc_displacement(solution.contact.pressure)
-    elastic = u[0::2] + 1j * u[1::2]
-    weight = np.zeros(len(nodes))
-    length = np.abs(nodes[chain[:, 2]] - nodes[chain[:, 0]])
-    for column, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
-        np.add.at(weight, chain[:, column], share * length / 6.0)
-    on = np.flatnonzero(weight)
-    shift, rotation = fit_rigid_motion(nodes[on], elastic[on], weight[on])
-    pose = solution.pose
-    return pose.disc_displacement + shift * np.exp(1j * pose.disc_rotation), pose.disc_rotation + rotation
+    pose = full.pose
+    x, y, rotation = full.model.bore_fit(full.state.contact.pressure).tolist()
+    return pose.disc_displacement + complex(x, y) * np.exp(1j * pose.disc_rotation), pose.disc_rotation + rotation

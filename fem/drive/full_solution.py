@@ -9,7 +9,7 @@ import numpy as np
 from fem.drive.contact_results import ContactResults
 from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes
-from fem.drive.model import DriveModel, DrivePose, RoundGroup
+from fem.drive.model import DriveModel, DrivePose, PlacedContacts, RoundGroup
 from fem.drive.pose import PoseSolution, moments_on_cranks, pair_forces
 from fem.mesh.uniform_refinement import CHILDREN
 from fem.options import SolutionOptions
@@ -60,7 +60,7 @@ class FullSolution:
 
     Attributes
     ----------
-    model : DriveModel
+    model : PlacedContacts
         Condensed bodies, meshes, candidate pairs.
     state : PoseSolution
         Pressures at the loaded pose.
@@ -68,19 +68,16 @@ class FullSolution:
         Loads, peak pressures, half-widths of all parts, and forces on the disc.
     options : SolutionOptions
         How it was solved.
-    pose_iterations : int
-        Steps on the final meshes.
     rounds : tuple of RoundGroup
         Condensed pins and rollers, coarse ones, too, to start another solution with.
     seconds : dict of str to float
         Wall time of each stage; ``total`` is their sum.
     """
 
-    model: DriveModel
+    model: PlacedContacts
     state: PoseSolution
     contacts: ContactResults
     options: SolutionOptions
-    pose_iterations: int
     rounds: tuple[RoundGroup, ...]
     seconds: dict[str, float]
 
@@ -88,6 +85,17 @@ class FullSolution:
     def pose(self) -> DrivePose:
         """Loaded pose."""
         return self.state.pose
+
+    @property
+    def pose_iterations(self) -> int:
+        """Steps on the final meshes."""
+        return self.state.iterations
+
+    @property
+    def plane(self) -> DriveModel:
+        """The model of plane bodies."""
+        assert isinstance(self.model, DriveModel), "fields in the plane are those of plane bodies"
+        return self.model
 
     @property
     def coarse(self) -> CoarseSolution:
@@ -124,4 +132,4 @@ class FullSolution:
     @property
     def unknowns(self) -> int:
         """Displacement unknowns of all bodies and pressure unknowns."""
-        return self.model.meshes.unknowns + self.model.unknown_count
+        return self.model.displacement_count + self.model.unknown_count

@@ -14,7 +14,7 @@ from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.contact_results import ContactResults, DeformedContacts
 from fem.drive.expected_contacts import ContactGroup, ExpectedContacts, HertzContacts
 from fem.drive.meshes import ELEMENTS_PER_HALF_WIDTH
-from fem.drive.model import DriveModel, PlacedContacts
+from fem.drive.model import PlacedContacts
 from fem.drive.pose import PoseSolution
 from fem.drive.rigid_bodies import RigidBodies, RigidGaps
 from ltca.arrays import ComplexArray, FloatArray
@@ -108,15 +108,17 @@ def _gaps_left(gaps: RigidGaps, deformed: DeformedContacts | None) -> tuple[Floa
     return tuple(np.where(np.isnan(gap), plain, gap) for gap, plain in zip(known, rigid, strict=True))
 
 
-def find_shortcoming(model: DriveModel, solution: PoseSolution, results: ContactResults, size: float = np.inf) -> str:
+def find_shortcoming(
+    model: PlacedContacts, solution: PoseSolution, results: ContactResults, size: float = np.inf
+) -> str:
     """Return why the meshes do not serve a solution with these contacts, "" when they do.
 
     Elements are measured against those of `size`, a multiple of the default edge; at infinity any will do.
     """
     for pair, detail in zip(model.pairs, results.details, strict=True):
-        own = solution.contact.pressure[pair.unknowns]
+        own = solution.contact.pressure[pair.unknowns].reshape(-1, pair.heights)
         name = CONTACT_KINDS[pair.kind].name_of(pair.index, model.placement)
-        if own[0] > 0.0 or own[-1] > 0.0:
+        if np.any(own[[0, -1]] > 0.0):
             return f"the pressure of {name} reaches the end of its zone"
         if (
             detail.share > FINE_SHARE
@@ -136,9 +138,6 @@ def closed_without_zone(model: PlacedContacts, solution: PoseSolution) -> str:
     rigid = RigidBodies(profile=flank_profile, placement=place, crank_angle=model.crank_angle)
     rigid = rigid.moved(*pose.displacements)
     gaps = rigid.gaps(pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-    elastic = model.disc_displacement(solution.contact.pressure)
-    moved = (elastic[0::2] + 1j * elastic[1::2]) * np.exp(1j * pose.disc_rotation)
-    nodes = model.meshes.disc.places
     turn = np.exp(1j * pose.disc_rotation)
     rays = model.roller_rays
     flank = flank_profile.flank(gaps.flank_parameters)
@@ -150,13 +149,16 @@ def closed_without_zone(model: PlacedContacts, solution: PoseSolution) -> str:
         "roller_outer": (gaps.rollers, bore, -rays),
         "hole": (gaps.holes, holes, -gaps.hole_directions),
     }
-    for kind, (gap, points, normals) in kinds.items():
-        for index in range(len(gap)):
-            if (kind, index) in candidates:
-                continue
-            nearest = int(np.argmin(np.abs(nodes - points[index])))
-            left = gap[index] - (moved[nearest] * np.conj(normals[index])).real
-            if left < 0.0:
-                name = CONTACT_KINDS[kind].name_of(index, place)
-                return f"{name} closes by {-1e3 * left:.3g} µm and has no contact zone"
+    names = [(kind, index) for kind, (gap, _, _) in kinds.items() for index in range(gap.size)]
+    others = [number for number, name in enumerate(names) if name not in candidates]
+    if not others:
+        return ""
+    gap, points, normals = (np.concatenate(each)[others] for each in zip(*kinds.values(), strict=True))
+    moved = turn * model.wall_displacements(points, solution.contact.pressure)
+    left = gap - (moved * normals.conjugate()).real
+    for number, remaining in zip(others, left.tolist(), strict=True):
+        if remaining < 0.0:
+            kind, index = names[number]
+            name = CONTACT_KINDS[kind].name_of(index, place)
+            return f"{name} closes by {-1e3 * remaining:.3g} µm and has no contact zone"
     return ""

@@ -7,10 +7,11 @@ rollers. Pins and rollers that share a mesh share one factorisation and one comp
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem.body.condensation import CondensedBody
@@ -23,7 +24,7 @@ from fem.drive.expected_contacts import ExpectedContacts
 from fem.drive.meshes import DriveMeshes, RoundGrading
 from fem.drive.rigid_bodies import bore_displacements
 from fem.mesh.body_mesh import BodyMesh
-from fem.shapes import DriveShapes
+from fem.shapes import DiscShape, DriveShapes
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.parts import Drive, Material
 from ltca.geometry.placement import Placement
@@ -120,6 +121,27 @@ class RoundGroup:
         """Number of stored values."""
         return self.condensed.entries
 
+    @property
+    def compliance(self) -> FloatArray:
+        """By forces on the nodes of the zones."""
+        return self.condensed.compliance
+
+
+class Compliant(Protocol):
+    """A condensed body."""
+
+    @property
+    def compliance(self) -> FloatArray:
+        """By its unit loads."""
+
+
+class CompliantRound(Compliant, Protocol):
+    """A condensed pin or roller."""
+
+    @property
+    def zones(self) -> tuple[OppositeZone, ...]:
+        """One for a pin; outer and inner for a roller."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ContactPair:
@@ -183,6 +205,15 @@ class PlacedContacts(ABC):
         All candidate contacts, those on the disc first.
     placement : Placement
         Nominal places of the parts.
+    disc : Compliant
+        Unit loads are the pressure unknowns on it.
+    race : Compliant
+        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
+        each once.
+    groups : tuple of CompliantRound
+        Pins and rollers.
+    race_loads : array of int
+        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
     """
 
     drive: Drive
@@ -192,16 +223,23 @@ class PlacedContacts(ABC):
     contacts: ExpectedContacts
     pairs: tuple[ContactPair, ...]
     placement: Placement
+    disc: Compliant
+    race: Compliant
+    groups: tuple[CompliantRound, ...]
+    race_loads: NDArray[np.intp]
+
+    @property
+    @abstractmethod
+    def displacement_count(self) -> int:
+        """Number of displacement unknowns of all bodies."""
 
     @abstractmethod
-    def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
-        """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
+    def gap_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted gap of each pressure unknown of a pair whose sides are parallel, mm·mm²."""
 
     @abstractmethod
-    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
-        """Return the contact problem about a pose with pins that stand; motions: disc x, y, rotation, wheel, rollers on their
-        rays, then others.
-        """
+    def loads_opposite(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray | sp.spmatrix:
+        """Return the unit loads of the round body opposite by the pressures of a pair, shape (loads, m)."""
 
     @abstractmethod
     def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
@@ -216,33 +254,80 @@ class PlacedContacts(ABC):
         """Return the pressures of a pair along its arc, at mid-width, of all pressures, MPa."""
 
     @abstractmethod
-    def disc_displacement(self, pressure: FloatArray) -> FloatArray:
-        """Return the nodal displacements of the disc in its own frame, at mid-width, mm, at all pressures, MPa."""
+    def wall_displacements(self, points: ComplexArray, pressure: FloatArray) -> ComplexArray:
+        """Return the displacements of the disc at mid-width next to points on its walls, all in its frame, mm."""
+
+    @abstractmethod
+    def bore_fit(self, pressure: FloatArray) -> FloatArray:
+        """Return x, y (mm) and rotation (rad) by deformation of the disc at its bores, in its frame, at all pressures, MPa."""
 
     def force_of(self, pair: ContactPair, integral: PairIntegrals, pressure: FloatArray) -> FloatArray:
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side of a pair at all pressures, MPa."""
         return np.asarray(self.resultants_of(pair, integral) @ pressure[pair.unknowns])
 
-    def forces_on_supports(
-        self, pose: DrivePose, integrals: Sequence[PairIntegrals]
-    ) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return x, y of the forces on wheel pins, in the wheel, shaft pins and cranks by all pressures, N/MPa, (2 parts, m)."""
-        place = self.placement
-        counts = len(place.wheel_pin_radii), len(place.hole_radii), place.cranks
-        on_wheel, on_shaft, on_cranks = (np.zeros((2 * count, self.unknown_count)) for count in counts)
-        in_wheel = self.wheel_direction(pose).conjugate()
+    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
+        """Return the condensed contact problem linearised about a pose, with pins that stand.
+
+        Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), each candidate roller along its ray (mm), then what leans.
+        """
+        count, rollers, first = self.unknown_count, self.rollers, self.on_disc
+        compliance = np.zeros((count, count))
+        compliance[:first, :first] = self.disc.compliance
+        for crank in range(self.placement.cranks):
+            own, unit_loads = self.race_unknowns(crank), self.loads_on_race(crank)
+            compliance[own, own] = self.race.compliance[np.ix_(unit_loads, unit_loads)]
+        motions, gap = np.zeros((count, self.motion_count)), np.zeros(count)
+        centre, axis, rays = self.disc_pose(pose).centre, complex(self.placement.wheel_axis), self.roller_rays
+        on_rounds: dict[tuple[str, int], list[tuple[ContactPair, PairIntegrals]]] = {}
         for pair, integral in zip(self.pairs, integrals, strict=True):
-            fx, fy, _ = self.resultants_of(pair, integral)
-            along = (fx + 1j * fy) * (in_wheel if pair.kind == "pin" else 1.0)
-            if pair.kind == "roller_inner":  # the crank carries roller and race with it
-                continue
-            rows, index = {
-                "pin": (on_wheel, pair.index),
-                "hole": (on_shaft, pair.index),
-                "roller_outer": (on_cranks, self.crank_of(pair.index) if pair.kind == "roller_outer" else 0),
-            }[pair.kind]
-            rows[2 * index, pair.unknowns], rows[2 * index + 1, pair.unknowns] = along.real, along.imag
-        return on_wheel, on_shaft, on_cranks
+            own = pair.unknowns
+            gap[own] = self.gap_of(pair, integral)
+            fx, fy, moment = self.resultants_of(pair, integral)
+            if pair.kind != "roller_inner":
+                motions[own, 0], motions[own, 1] = -fx, -fy
+                motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
+            if pair.kind == "pin":
+                motions[own, 3] = moment - axis.real * fy + axis.imag * fx
+            elif pair.kind != "hole":
+                ray = rays[pair.index]
+                motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag
+            if pair.group >= 0:
+                on_rounds.setdefault((pair.kind.partition("_")[0], pair.index), []).append((pair, integral))
+            self.add_leans(pair, integral, pose, gap, motions)
+        for sides in on_rounds.values():
+            own_all = np.concatenate([np.arange(pair.unknowns.start, pair.unknowns.stop) for pair, _ in sides])
+            loads = sp.csr_matrix(sp.block_diag([self.loads_opposite(*side) for side in sides]))
+            of_round = self.groups[sides[0][0].group].compliance
+            compliance[np.ix_(own_all, own_all)] += loads.T @ (loads.T @ of_round).T
+        external = np.zeros(self.motion_count)
+        external[3] = -wheel_moment
+        return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)
+
+    @abstractmethod
+    def add_leans(
+        self, pair: ContactPair, integral: PairIntegrals, pose: DrivePose, gap: FloatArray, motions: FloatArray
+    ) -> None:
+        """Add to gaps what stands inclined, and to motions what tilts along the width."""
+
+    def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
+        """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
+        return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+
+    @property
+    def on_disc(self) -> int:
+        """Number of pressure unknowns on the disc, the first of all."""
+        return int(self.disc.compliance.shape[0])
+
+    def race_unknowns(self, crank: int) -> slice:
+        """Return the pressure unknowns on the inner race of a crank among all: rollers follow each other by cranks."""
+        inner = [pair for pair in self.pairs if pair.kind == "roller_inner" and self.crank_of(pair.index) == crank]
+        first = self.on_disc
+        return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
+
+    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
+        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
+        own, first = self.race_unknowns(crank), self.on_disc
+        return self.race_loads[own.start - first : own.stop - first]
 
     @property
     def unknown_count(self) -> int:
@@ -287,7 +372,7 @@ class PlacedContacts(ABC):
         place = self.placement
         if kind == "pin":
             centre = place.wheel_pin_centres[index] + pose.wheel_pin_displacements[index]
-            return complex(centre * self.wheel_direction(pose))
+            return complex(place.wheel_axis + centre * self.wheel_direction(pose))
         if kind == "hole":
             return complex(place.shaft_pin_centres[index] + pose.shaft_pin_displacements[index])
         crank = self.crank_of(index)
@@ -355,25 +440,31 @@ class DriveModel(PlacedContacts):
 
     Attributes
     ----------
-    disc : CondensedBody
-        Unit loads are the pressure unknowns on it.
-    race : CondensedBody
-        One body that represents the inner races of all cranks; unit loads are the pressures about its boundary vertices,
-        each once.
-    groups : tuple of RoundGroup
-        Pins and rollers.
-    race_loads : array of int
-        Unit load of `race` that each pressure unknown of an inner race is, crank after crank.
+    disc, race, groups
+        Plane bodies.
     """
 
     disc: CondensedBody
     race: CondensedBody
     groups: tuple[RoundGroup, ...]
-    race_loads: NDArray[np.intp]
 
-    def opposite_zone(self, pair: ContactPair) -> OppositeZone | None:
-        """Return the meshed zone opposite the pressure of a pair, None for a rigid circle."""
-        return None if pair.group < 0 else self.groups[pair.group].zones[1 if pair.kind == "roller_inner" else 0]
+    @property
+    def displacement_count(self) -> int:
+        """Number of displacement unknowns of all bodies."""
+        return self.meshes.unknowns
+
+    def gap_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the weighted gap of each pressure unknown of a pair, mm·mm²."""
+        return integral.gap
+
+    def loads_opposite(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
+        """Return the forces on the nodes of the zone opposite by the pressures of a pair, shape (loads, m)."""
+        return integral.opposite_loads
+
+    def add_leans(
+        self, pair: ContactPair, integral: PairIntegrals, pose: DrivePose, gap: FloatArray, motions: FloatArray
+    ) -> None:
+        """Leave gaps and motions as they are: nothing leans in the plane."""
 
     def resultants_of(self, pair: ContactPair, integral: PairIntegrals) -> FloatArray:
         """Return force (x, y, N) and moment about the origin (N·mm) on the round side by its pressures, MPa, shape (3, m)."""
@@ -387,20 +478,21 @@ class DriveModel(PlacedContacts):
         """Return the pressures of a pair along its arc, of all pressures, MPa."""
         return pressure[pair.unknowns]
 
-    def race_unknowns(self, crank: int) -> slice:
-        """Return the pressure unknowns on the inner race of a crank among all: rollers follow each other by cranks."""
-        inner = [pair for pair in self.pairs if pair.kind == "roller_inner" and self.crank_of(pair.index) == crank]
-        first = self.disc.compliance.shape[0]
-        return slice(inner[0].unknowns.start, inner[-1].unknowns.stop) if inner else slice(first, first)
+    def wall_displacements(self, points: ComplexArray, pressure: FloatArray) -> ComplexArray:
+        """Return the displacements of the disc at its nodes next to points, both in its frame, mm."""
+        nearest = [int(np.argmin(np.abs(self.meshes.disc.places - point))) for point in points.tolist()]
+        moved = self.disc_displacement(pressure)
+        return np.asarray((moved[0::2] + 1j * moved[1::2])[nearest])
 
-    def loads_on_race(self, crank: int) -> NDArray[np.intp]:
-        """Return which unit load of `race` each pressure unknown on the inner race of a crank is."""
-        own, first = self.race_unknowns(crank), self.disc.compliance.shape[0]
-        return self.race_loads[own.start - first : own.stop - first]
+    def bore_fit(self, pressure: FloatArray) -> FloatArray:
+        """Return x, y (mm) and rotation (rad) by deformation of the disc at its bores, in its frame, at all pressures, MPa."""
+        nodes, fit = bore_weights(self.meshes.disc, self.shapes.disc)
+        moved = self.disc_displacement(pressure)
+        return np.asarray(fit @ np.concatenate([moved[0::2][nodes], moved[1::2][nodes]]))
 
     def disc_displacement(self, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the disc in its own frame, mm, at all pressures of the drive, MPa."""
-        return self.disc.displacement(pressure[: self.disc.compliance.shape[0]])
+        return self.disc.displacement(pressure[: self.on_disc])
 
     def race_displacement(self, crank: int, pressure: FloatArray) -> FloatArray:
         """Return the nodal displacements of the inner race of a crank, fixed axes, mm, at all pressures of the drive, MPa."""
@@ -408,49 +500,25 @@ class DriveModel(PlacedContacts):
         carried[self.loads_on_race(crank)] = pressure[self.race_unknowns(crank)]
         return self.race.displacement(carried)
 
-    def contact_problem(self, pose: DrivePose, integrals: list[PairIntegrals], wheel_moment: float) -> ContactProblem:
-        """Return the condensed contact problem linearised about a pose, with pins that stand.
 
-        Motions: disc x, y (mm), rotation (rad), wheel rotation (rad), then each candidate roller along its ray.
-        """
-        count, rollers = self.unknown_count, self.rollers
-        compliance = np.zeros((count, count))
-        on_disc = self.disc.compliance.shape[0]
-        compliance[:on_disc, :on_disc] = self.disc.compliance
-        for crank in range(self.placement.cranks):
-            own, unit_loads = self.race_unknowns(crank), self.loads_on_race(crank)
-            compliance[own, own] = self.race.compliance[np.ix_(unit_loads, unit_loads)]
-        motions = np.zeros((count, 4 + len(rollers)))
-        gap = np.zeros(count)
-        centre = self.disc_pose(pose).centre
-        by_roller: dict[int, list[tuple[ContactPair, PairIntegrals]]] = {}
-        for pair, integral in zip(self.pairs, integrals, strict=True):
-            own = pair.unknowns
-            gap[own] = integral.gap
-            fx, fy, moment = integral.force
-            if pair.kind != "roller_inner":
-                motions[own, 0], motions[own, 1] = -fx, -fy
-                motions[own, 2] = -(moment - centre.real * fy + centre.imag * fx)
-            if pair.kind == "pin":
-                motions[own, 3] = moment
-            if pair.kind in ("pin", "hole"):
-                if pair.group >= 0:
-                    loads = integral.opposite_loads
-                    compliance[own, own] += loads.T @ self.groups[pair.group].condensed.compliance @ loads
-            else:
-                ray = self.roller_rays[pair.index]
-                motions[own, 4 + rollers.index(pair.index)] = fx * ray.real + fy * ray.imag
-                by_roller.setdefault(pair.index, []).append((pair, integral))
-        for ends in by_roller.values():
-            (outer, outer_integral), (inner, inner_integral) = ends
-            own = np.r_[outer.unknowns, inner.unknowns]
-            split = outer_integral.opposite_loads.shape[0]
-            compliance_round = self.groups[outer.group].condensed.compliance
-            loads = np.zeros((compliance_round.shape[0], len(own)))
-            width = outer_integral.gap.size
-            loads[:split, :width] = outer_integral.opposite_loads
-            loads[split:, width:] = inner_integral.opposite_loads
-            compliance[np.ix_(own, own)] += loads.T @ compliance_round @ loads
-        external = np.zeros(4 + len(rollers))
-        external[3] = -wheel_moment
-        return ContactProblem(compliance=compliance, gap=gap, motions=motions, external=external)
+def bore_weights(disc: BodyMesh, shape: DiscShape) -> tuple[NDArray[np.intp], FloatArray]:
+    """Return the nodes on the bores of a disc and what their displacements weigh in x, y and rotation that fit them best.
+
+    Weights by x of all nodes, then y, shape (3, 2 nodes): least squares over the length of the bores.
+    """
+    chain = np.concatenate([disc.boundary_nodes(bore.name) for bore in shape.bores])
+    places = disc.places
+    weight = np.zeros(len(places))
+    length = np.abs(places[chain[:, 2]] - places[chain[:, 0]])
+    for column, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
+        np.add.at(weight, chain[:, column], share * length / 6.0)
+    nodes = np.flatnonzero(weight)
+    return nodes, rigid_fit(places[nodes], weight[nodes])
+
+
+def rigid_fit(places: ComplexArray, weight: FloatArray) -> FloatArray:
+    """Return the weights of displacements in the translation of the origin and rotation that fit them best, (3, 2 places)."""
+    x, y, one = places.real, places.imag, np.ones(len(places))
+    rows = np.vstack([np.column_stack([one, 0 * one, -y]), np.column_stack([0 * one, one, x])])
+    root = np.sqrt(np.concatenate([weight, weight]))
+    return np.asarray(np.linalg.pinv(rows * root[:, None]) * root)

@@ -107,6 +107,11 @@ def pair_forces(model: PlacedContacts, integrals: Sequence[PairIntegrals], press
     )
 
 
+def moment_about(place: complex, force: FloatArray) -> float:
+    """Return the moment about a place of a force (x, y, N) with its moment about the origin, N·mm."""
+    return float(force[2] - place.real * force[1] + place.imag * force[0])
+
+
 def moments_on_cranks(model: PlacedContacts, forces: FloatArray) -> FloatArray:
     """Return the external moment that holds each crank, ccw positive, N·mm, by `pair_forces`, shape (cranks,).
 
@@ -146,7 +151,7 @@ def joint_problem(
             compliance[own, own] = problem.compliance
             motions[own, columns] = problem.motions
             external[columns] = problem.external
-    forces = [model.forces_on_supports(pose, each) for model, pose, each in zip(models, poses, integrals, strict=True)]
+    forces = [_by_pressures(model, pose, each) for model, pose, each in zip(models, poses, integrals, strict=True)]
     on_wheel, on_shaft, on_cranks = (sla.block_diag(*each) for each in zip(*forces, strict=True))
     at_shaft = [pose.shaft_pin_displacements for pose in poses] + [pose.crank_displacements for pose in poses]
     for flexibility, force, moved in (
@@ -252,7 +257,7 @@ def solve_poses(
         ]
         size = np.concatenate([np.hypot(each[:, 0], each[:, 1]) for each in forces])
         previous, loads = loads, size
-        following, increment = _move(models, supports, poses, parts, forces)
+        following, increment = _move(models, supports, poses, integrals, parts)
         increments.append(increment)
         changes.append(float(np.max(np.abs(loads - previous)) / np.max(loads)))
         held_by = load.balanced_by(
@@ -296,8 +301,9 @@ def _at_one_wheel(poses: Sequence[DrivePose]) -> list[DrivePose]:
 
 
 def _wheel_moment(model: PlacedContacts, forces: FloatArray) -> float:
-    """External moment on the wheel against the forces of a disc, N·mm."""
-    return -float(sum(force[2] for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "pin"))
+    """External moment on the wheel against the forces of a disc, about its axis, N·mm."""
+    of_pins = sum(force for pair, force in zip(model.pairs, forces, strict=True) if pair.kind == "pin")
+    return -float(moment_about(complex(model.placement.wheel_axis), np.asarray(of_pins)))
 
 
 def _by_disc(models: Sequence[PlacedContacts], found: ContactSolution) -> list[ContactSolution]:
@@ -320,8 +326,8 @@ def _move(
     models: Sequence[PlacedContacts],
     supports: Supports,
     poses: Sequence[DrivePose],
+    integrals: Sequence[Sequence[PairIntegrals]],
     contacts: Sequence[ContactSolution],
-    forces: Sequence[FloatArray],
 ) -> tuple[list[DrivePose], float]:
     """Return the poses found and the largest increment, mm."""
     motions, largest = [], 0.0
@@ -335,7 +341,7 @@ def _move(
         motions.append(motion)
     part = min(1.0, MAX_STEP / largest) if largest > 0.0 else 1.0
     increment, found = largest, []
-    moved = supports.moved(*forces_on_supports(models, poses, forces))
+    moved = supports.moved(*forces_on_supports(models, poses, integrals, [each.pressure for each in contacts]))
     for model, pose, motion, seats, pins, cranks in zip(models, poses, motions, *moved, strict=True):
         change = np.concatenate(
             [
@@ -363,21 +369,33 @@ def _move(
 
 
 def forces_on_supports(
-    models: Sequence[PlacedContacts], poses: Sequence[DrivePose], forces: Sequence[FloatArray]
+    models: Sequence[PlacedContacts],
+    poses: Sequence[DrivePose],
+    integrals: Sequence[Sequence[PairIntegrals]],
+    pressures: Sequence[FloatArray],
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return the forces on wheel pins, in the wheel, shaft pins and cranks by `pair_forces` of all discs, N, (discs, parts)."""
-    first = poses[0]
-    on_wheel, on_shaft, on_cranks = (
-        np.zeros((len(models), each.size), dtype=complex)
-        for each in (first.wheel_pin_displacements, first.shaft_pin_displacements, first.crank_displacements)
-    )
-    for disc, (model, pose, acting) in enumerate(zip(models, poses, forces, strict=True)):
-        in_wheel = model.wheel_direction(pose).conjugate()
-        for pair, (x, y, _) in zip(model.pairs, acting.tolist(), strict=True):
-            if pair.kind == "hole":
-                on_shaft[disc, pair.index] = complex(x, y)
-            elif pair.kind == "pin":
-                on_wheel[disc, pair.index] = complex(x, y) * in_wheel
-            elif pair.kind == "roller_outer":
-                on_cranks[disc, model.crank_of(pair.index)] += complex(x, y)
+    """Return the forces on wheel pins, in the wheel, shaft pins and cranks by the pressures of all discs, N, (discs, parts)."""
+    discs = zip(models, poses, integrals, pressures, strict=True)
+    found = [[on @ own for on in _by_pressures(model, pose, each)] for model, pose, each, own in discs]
+    wheel, shaft, cranks = (np.array(each)[:, 0::2] + 1j * np.array(each)[:, 1::2] for each in zip(*found, strict=True))
+    return wheel, shaft, cranks
+
+
+def _by_pressures(
+    model: PlacedContacts, pose: DrivePose, integrals: Sequence[PairIntegrals]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """x, y of the forces of a disc on wheel pins, in the wheel, shaft pins and cranks by its pressures, N/MPa, (2 parts, m)."""
+    place, in_wheel = model.placement, model.wheel_direction(pose).conjugate()
+    counts = len(place.wheel_pin_radii), len(place.hole_radii), place.cranks
+    on_wheel, on_shaft, on_cranks = (np.zeros((2 * count, model.unknown_count)) for count in counts)
+    for pair, integral in zip(model.pairs, integrals, strict=True):
+        if pair.kind == "roller_inner":  # the crank carries roller and race with it
+            continue
+        fx, fy, _ = model.resultants_of(pair, integral)
+        along, rows, index = fx + 1j * fy, on_shaft, pair.index
+        if pair.kind == "pin":
+            along, rows = along * in_wheel, on_wheel
+        elif pair.kind == "roller_outer":
+            rows, index = on_cranks, model.crank_of(pair.index)
+        rows[2 * index, pair.unknowns], rows[2 * index + 1, pair.unknowns] = along.real, along.imag
     return on_wheel, on_shaft, on_cranks

@@ -91,7 +91,7 @@ class RigidBodies:
         profile, place = self.profile, self.placement
         turn, wheel = np.exp(1j * rotation), self.crank_angle / place.reduction_ratio + wheel_angle
         centre = complex(place.races(np.asarray(self.crank_angle)).middle) + displacement
-        pins = (place.wheel_pin_centres * np.exp(1j * wheel) - centre) / turn
+        pins = (self.wheel_pins(wheel_angle) - centre) / turn
         start = np.angle(place.wheel_pin_centres) + wheel - rotation
         theta = profile.nearest_point(pins, _on_turned_flank(profile, start)).parameter
         rays = self.roller_rays()
@@ -115,7 +115,7 @@ class RigidBodies:
     def wheel_pins(self, wheel_angle: float) -> ComplexArray:
         """Return the centres of the wheel pins, fixed frame, mm."""
         turn = self.crank_angle / self.placement.reduction_ratio + wheel_angle
-        return np.asarray(self.placement.wheel_pin_centres * np.exp(1j * turn))
+        return np.asarray(self.placement.wheel_axis + self.placement.wheel_pin_centres * np.exp(1j * turn))
 
     def flank_parameters(self, pose: FloatArray) -> FloatArray:
         """Return θ of the point of the flank nearest to each wheel pin at a pose (x, y, disc rotation, wheel angle)."""
@@ -146,9 +146,8 @@ class RigidBodies:
         in_disc = (pins - centre) / turn
         n = self.profile.normal(theta) * turn
         flank = place.wheel_pin_radii - self.profile.distance(in_disc, theta)
-        flank_gradient = np.column_stack(
-            [n.real, n.imag, (n.conjugate() * 1j * (pins - centre)).real, -(n.conjugate() * 1j * pins).real]
-        )
+        about_axis = -(n.conjugate() * 1j * (pins - place.wheel_axis)).real
+        flank_gradient = np.column_stack([n.real, n.imag, (n.conjugate() * 1j * (pins - centre)).real, about_axis])
         d = self.roller_rays()
         play = place.bore_radius - place.inner_race_radius - 2.0 * place.roller_radii
         shift = complex(pose[X], pose[Y])

@@ -16,16 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fem.drive.condensed import condense_drive, keep_rounds
-from fem.drive.contact_results import ContactResults, DeformedContacts, deformed_contacts, summarise_contacts
-from fem.drive.expected_contacts import (
-    ExpectedContacts,
-    expect_contacts,
-    require_one_disc,
-)
+from fem.drive.contact_results import ContactResults, deformed_contacts, summarise_contacts
+from fem.drive.expected_contacts import ExpectedContacts, guess_contacts, require_one_disc
 from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.grading import FINE_SHARE, find_shortcoming, grade_contacts
 from fem.drive.meshes import DriveMeshes, mesh_drive, require_model_memory
-from fem.drive.model import DriveModel, RoundGroup
+from fem.drive.model import PlacedContacts, RoundGroup
 from fem.drive.pose import POSE_TOLERANCE, PoseSolution, WheelLoad, solve_poses
 from fem.drive.rigid_bodies import RigidBodies
 from fem.drive.supports import Supports
@@ -33,7 +29,6 @@ from fem.errors import MeshError
 from fem.mesh.memory_need import require_memory, solution_memory
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
 from fem.shapes import DriveShapes
-from ltca.arrays import FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
 from ltca.drive.single_discs import single_discs
@@ -59,8 +54,22 @@ SIZE_RESERVE = 0.96
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Disc:
-    """One disc with its pins and rollers; `approach` is the largest overlap in the guess, mm."""
+class PlaneDisc:
+    """One disc with its pins and rollers as plane bodies.
+
+    Attributes
+    ----------
+    drive : Drive
+        Of one disc.
+    rigid : RigidBodies
+        Its bodies as rigid ones.
+    shapes : DriveShapes
+        Exact shapes.
+    guess : ExpectedContacts
+        Contacts of rigid bodies on springs.
+    approach : float
+        Largest overlap in the guess, mm.
+    """
 
     drive: Drive
     rigid: RigidBodies
@@ -69,10 +78,10 @@ class _Disc:
     approach: float
 
     @classmethod
-    def of_single(cls, drive: Drive, crank_angle: float, wheel_moment: float) -> _Disc:
+    def of_single(cls, drive: Drive, crank_angle: float, wheel_moment: float) -> PlaneDisc:
         """Return the disc of a drive of one under a moment on the wheel, N·mm."""
         rigid = RigidBodies.of_drive(drive, crank_angle)
-        guess = expect_contacts(drive, crank_angle, wheel_moment=wheel_moment)
+        guess = guess_contacts(drive, crank_angle, wheel_moment=wheel_moment)
         return cls(
             drive=drive,
             rigid=rigid,
@@ -81,130 +90,170 @@ class _Disc:
             approach=_largest_approach(rigid, guess),
         )
 
-    def grade(
-        self,
-        rigid: RigidBodies,
-        pose: tuple[complex, float, float],
-        loads: tuple[FloatArray, FloatArray, FloatArray],
-        *,
-        margin: float,
-        share: float,
-        deformed: DeformedContacts | None = None,
-    ) -> ExpectedContacts:
-        """Return the contacts to grade meshes for."""
-        return grade_contacts(
-            self.drive, rigid, *pose, loads, margin=margin * self.approach, smallest_share=share, deformed=deformed
-        )
-
+    @property
     def guessed(self) -> ExpectedContacts:
-        """Return the contacts of the coarse meshes: wherever the guess has a load."""
+        """The contacts of the coarse meshes: wherever the guess has a load."""
         guess = self.guess
-        place = (complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle)
         loads = (guess.pins.load, guess.rollers_outer.load, guess.holes.load)
-        return self.grade(self.rigid, place, loads, margin=COARSE_MARGIN, share=COARSE_SHARE)
+        place = complex(guess.disc_x, guess.disc_y), guess.disc_rotation, guess.wheel_angle
+        margin = COARSE_MARGIN * self.approach
+        return grade_contacts(self.drive, self.rigid, *place, loads, margin=margin, smallest_share=COARSE_SHARE)
 
-    def graded(self, model: DriveModel, solution: PoseSolution, grading: int) -> ExpectedContacts:
+    def graded(self, model: PlacedContacts, solution: PoseSolution, grading: int) -> ExpectedContacts:
         """Return the contacts of a solution on other meshes."""
         results, pose = summarise_contacts(model, solution), solution.pose
-        place = (pose.disc_displacement, pose.disc_rotation, pose.wheel_angle)
-        loads = (results.pin_load, results.roller_load, results.pin_shaft_load)
-        # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
-        margin, deformed = FINE_MARGIN * 3.0 ** (grading - 1), deformed_contacts(model, solution)
-        rigid = self.rigid.moved(*pose.displacements)
-        return self.grade(rigid, place, loads, margin=margin, share=FINE_SHARE, deformed=deformed)
+        return grade_contacts(
+            self.drive,
+            self.rigid.moved(*pose.displacements),
+            pose.disc_displacement,
+            pose.disc_rotation,
+            pose.wheel_angle,
+            (results.pin_load, results.roller_load, results.pin_shaft_load),
+            # A contact that closes although the rigid bodies leave it open is caught by the wider margin next time.
+            margin=FINE_MARGIN * 3.0 ** (grading - 1) * self.approach,
+            smallest_share=FINE_SHARE,
+            deformed=deformed_contacts(model, solution),
+        )
+
+    def fine(self, options: SolutionOptions) -> SolutionOptions:
+        """Return the options of the graded meshes."""
+        return replace(options, size=options.size * SIZE_RESERVE)
+
+    def mesh(self, contacts: ExpectedContacts, options: SolutionOptions, rounds: tuple[RoundGroup, ...]) -> DriveMeshes:
+        """Return meshes graded for contacts; those of known pins and rollers are taken again."""
+        known = {group.made_of.grading: group.body for group in rounds}
+        return mesh_drive(self.shapes, contacts, options, known=known)
+
+    def condense(
+        self,
+        contacts: ExpectedContacts,
+        meshes: DriveMeshes,
+        options: SolutionOptions,
+        rounds: tuple[RoundGroup, ...],
+        say: Callable[[str], None],
+    ) -> PlacedContacts:
+        """Return the condensed bodies on meshes."""
+        return condense_drive(self.drive, self.shapes, contacts, meshes, plane=options.plane, known=rounds)
+
+    def shortcoming(
+        self, model: PlacedContacts, solution: PoseSolution, results: ContactResults, options: SolutionOptions
+    ) -> str:
+        """Return why the meshes do not serve a solution, "" when they do."""
+        return find_shortcoming(model, solution, results, options.size)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class _Task:
+class Task:
     """What stays the same through all stages of one solution."""
 
-    discs: tuple[_Disc, ...]
+    discs: Sequence[PlaneDisc]
     supports: Supports
     load: WheelLoad
     options: SolutionOptions
     pose_tolerance: float
     say: Callable[[str], None]
-    watch: _Stopwatch
+    watch: Stopwatch
 
     def solve_guess(
         self, start: tuple[float, float, float, float] | None, rounds: tuple[RoundGroup, ...]
-    ) -> tuple[list[DriveModel], tuple[PoseSolution, ...]]:
+    ) -> tuple[list[PlacedContacts], tuple[PoseSolution, ...]]:
         """Solve on coarse meshes; `start` is that of every disc."""
-        contacts = [disc.guessed() for disc in self.discs]
+        contacts = [disc.guessed for disc in self.discs]
         self.watch.lap("guess")
         self.say("coarse meshes")
-        models = list[DriveModel]()
+        models = list[PlacedContacts]()
         for disc, expected in zip(self.discs, contacts, strict=True):
-            models.append(self.condense_coarse(disc, expected, _with_groups(rounds, models)))
+            models.append(self.condense_coarse(disc, expected, with_groups(rounds, models)))
         starts = None if start is None else [model.start_pose(start) for model in models]
         found = solve_poses(models, self.supports, self.load, starts, progress=self.say)
         self.watch.lap("coarse")
         return models, found
 
-    def condense_coarse(self, disc: _Disc, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]) -> DriveModel:
+    def condense_coarse(
+        self, disc: PlaneDisc, contacts: ExpectedContacts, rounds: tuple[RoundGroup, ...]
+    ) -> PlacedContacts:
+        """Return a disc on coarse meshes."""
         coarse = SolutionOptions(
             size=max(COARSE_SIZE, self.options.size), plane=self.options.plane, growth=COARSE_GROWTH
         )
         try:
-            return self.condense(disc, contacts, self.mesh(disc, contacts, coarse, rounds), rounds)
+            return disc.condense(contacts, disc.mesh(contacts, coarse, rounds), coarse, rounds, self.say)
         except MeshError:
             # Fast growth in a narrow place may end in too flat triangles; a drive is not refused for that.
             slow = replace(coarse, growth=self.options.growth)
-            return self.condense(disc, contacts, self.mesh(disc, contacts, slow, rounds), rounds)
+            return disc.condense(contacts, disc.mesh(contacts, slow, rounds), slow, rounds, self.say)
 
     def solve_graded(
         self,
-        models: Sequence[DriveModel],
+        models: Sequence[PlacedContacts],
+        found: Sequence[PoseSolution],
+        rounds: tuple[RoundGroup, ...] = (),
+    ) -> tuple[FullSolution, ...]:
+        """Solve on meshes graded for the contacts of another solution, anew until they serve."""
+        discs, complaints = self.discs, ["coarse"] * len(self.discs)
+        for grading in range(1, MAX_GRADINGS + 1):
+            models = self.grade(models, found, complaints, grading, rounds)
+            load, starts = self.load, [each.pose for each in found]
+            if load.output is not None:
+                load = replace(load, moment=sum(each.wheel_moment for each in found))
+            found = solve_poses(
+                models, self.supports, load, starts, pose_tolerance=self.pose_tolerance, progress=self.say
+            )
+            self.watch.lap("contact and pose")
+            rounds = with_groups(rounds, models)
+            results = [summarise_contacts(model, own) for model, own in zip(models, found, strict=True)]
+            complaints = [
+                disc.shortcoming(model, own, contacts, self.options)
+                for disc, model, own, contacts in zip(discs, models, found, results, strict=True)
+            ]
+            self.watch.lap("check")
+            if not any(complaints):
+                return _solutions(models, found, results, self.options, rounds, self.watch)
+            complaint = next(filter(None, complaints))
+            self.say(f"meshes graded anew ({grading}): {complaint}")
+        hint = "; use smaller elements" if self.options.size > COARSE_SIZE else ""
+        raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
+
+    def grade(
+        self,
+        models: Sequence[PlacedContacts],
         found: Sequence[PoseSolution],
         complaints: Sequence[str],
         grading: int,
         rounds: tuple[RoundGroup, ...],
-    ) -> tuple[list[DriveModel], tuple[PoseSolution, ...]]:
-        """Solve on meshes graded for the contacts of another solution, those of discs without complaint as they are."""
-        graded, made = list(models), list[DriveModel]()
+    ) -> list[PlacedContacts]:
+        """Return the discs on meshes graded for the contacts of another solution, those without complaint as they are."""
+        graded, made = list(models), list[PlacedContacts]()
         for number, (disc, model, own) in enumerate(zip(self.discs, models, found, strict=True)):
             if not complaints[number]:
                 continue
             contacts = disc.graded(model, own, grading)
             self.say("meshes" if len(self.discs) == 1 else f"disc {number}: meshes")
-            known = _with_groups(rounds, made)
-            meshes = self.mesh(disc, contacts, replace(self.options, size=self.options.size * SIZE_RESERVE), known)
+            known = with_groups(rounds, made)
+            meshes = disc.mesh(contacts, disc.fine(self.options), known)
             self.watch.lap("mesh")
-            graded[number] = self.condense(disc, contacts, meshes, known)
+            graded[number] = disc.condense(contacts, meshes, self.options, known, self.say)
             made.append(graded[number])
             self.watch.lap("assembly and factorisation")
-        starts = [each.pose for each in found]
-        solved = solve_poses(
-            graded, self.supports, self.load, starts, pose_tolerance=self.pose_tolerance, progress=self.say
-        )
-        self.watch.lap("contact and pose")
-        return graded, solved
-
-    def mesh(
-        self, disc: _Disc, contacts: ExpectedContacts, options: SolutionOptions, rounds: tuple[RoundGroup, ...]
-    ) -> DriveMeshes:
-        known = {group.made_of.grading: group.body for group in rounds}
-        return mesh_drive(disc.shapes, contacts, options, known=known)
-
-    def condense(
-        self, disc: _Disc, contacts: ExpectedContacts, meshes: DriveMeshes, rounds: tuple[RoundGroup, ...]
-    ) -> DriveModel:
-        return condense_drive(disc.drive, disc.shapes, contacts, meshes, plane=self.options.plane, known=rounds)
+        return graded
 
 
-def _with_groups(rounds: tuple[RoundGroup, ...], models: Sequence[DriveModel]) -> tuple[RoundGroup, ...]:
-    """Pins and rollers known before and those of other discs."""
+def with_groups(rounds: tuple[RoundGroup, ...], models: Sequence[PlacedContacts]) -> tuple[RoundGroup, ...]:
+    """Return plane pins and rollers known before and those of other discs."""
     for model in models:
-        rounds = keep_rounds(rounds, model.groups)
+        rounds = keep_rounds(rounds, tuple(group for group in model.groups if isinstance(group, RoundGroup)))
     return rounds
 
 
-class _Stopwatch:
+class Stopwatch:
+    """Wall time by stages."""
+
     def __init__(self) -> None:
         self.seconds: dict[str, float] = {}
         self._last = time.perf_counter()
 
     def lap(self, stage: str) -> None:
+        """Count the time since the last call to a stage."""
         now = time.perf_counter()
         self.seconds[stage] = self.seconds.get(stage, 0.0) + now - self._last
         self._last = now
@@ -312,51 +361,56 @@ def solve_discs(
         When the meshes would not fit into memory.
     """
     require(drive, "full FE")
-    say, watch, singles = progress or (lambda _: None), _Stopwatch(), single_discs(drive)
-    discs = tuple(_Disc.of_single(single, crank_angle, load.moment / len(singles)) for single in singles)
+    watch, discs = Stopwatch(), plane_discs(drive, crank_angle, load)
     require_model_memory([(disc.shapes, disc.guess) for disc in discs], options)
-    task = _Task(
+    return solve_plane_discs(drive, discs, load, options, watch, start, rounds, pose_tolerance, progress)
+
+
+def plane_discs(drive: Drive, crank_angle: float, load: WheelLoad) -> tuple[PlaneDisc, ...]:
+    """Return every disc of a drive, under an equal share of the moment on the wheel."""
+    singles = single_discs(drive)
+    return tuple(PlaneDisc.of_single(single, crank_angle, load.moment / len(singles)) for single in singles)
+
+
+def solve_plane_discs(
+    drive: Drive,
+    discs: Sequence[PlaneDisc],
+    load: WheelLoad,
+    options: SolutionOptions,
+    watch: Stopwatch,
+    start: tuple[float, float, float, float] | None = None,
+    rounds: tuple[RoundGroup, ...] = (),
+    pose_tolerance: float = POSE_TOLERANCE,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[FullSolution, ...]:
+    """Solve the discs of an accepted drive as plane bodies: coarse, then graded; arguments of `solve_discs`."""
+    task = Task(
         discs=discs,
         supports=Supports.of_drive(drive),
         load=load,
         options=options,
         pose_tolerance=pose_tolerance,
-        say=say,
+        say=progress or (lambda _: None),
         watch=watch,
     )
     try:
         models, found = task.solve_guess(start, rounds)
     except ConvergenceError as error:
-        if (idle := _idle_disc(discs, crank_angle, load.moment)) is None:
+        if (idle := _idle_disc(discs, load.moment)) is None:
             raise
         raise ConvergenceError(
             f"disc {idle} carries less than {LEAST_SHARE:g} of the mean share of the wheel's moment: finite elements cannot "
             "say where a disc without load rests",
             error.history,
         ) from None
-    rounds, complaints = _with_groups(rounds, models), ["coarse"] * len(discs)
-    for grading in range(1, MAX_GRADINGS + 1):
-        models, found = task.solve_graded(models, found, complaints, grading, rounds)
-        rounds = _with_groups(rounds, models)
-        results = [summarise_contacts(model, own) for model, own in zip(models, found, strict=True)]
-        complaints = [
-            find_shortcoming(model, own, contacts, options.size)
-            for model, own, contacts in zip(models, found, results, strict=True)
-        ]
-        watch.lap("check")
-        if not any(complaints):
-            return _solutions(models, found, results, options, rounds, watch)
-        complaint = next(filter(None, complaints))
-        say(f"meshes graded anew ({grading}): {complaint}")
-    hint = "; use smaller elements" if options.size > COARSE_SIZE else ""
-    raise ConvergenceError(f"meshes do not fit the contacts after {MAX_GRADINGS} gradings: {complaint}{hint}")
+    return task.solve_graded(models, found, with_groups(rounds, models))
 
 
-def _idle_disc(discs: Sequence[_Disc], crank_angle: float, moment: float) -> int | None:
+def _idle_disc(discs: Sequence[PlaneDisc], moment: float) -> int | None:
     """The first disc that is hardly touched where another one carries all of the moment, by springs between rigid bodies."""
 
-    def wound(disc: _Disc, part: float) -> float:
-        guess = expect_contacts(disc.drive, crank_angle, wheel_moment=part * moment)
+    def wound(disc: PlaneDisc, part: float) -> float:
+        guess = guess_contacts(disc.drive, disc.rigid.crank_angle, wheel_moment=part * moment)
         return float(np.sign(moment)) * guess.wheel_angle
 
     alone = [wound(disc, 1.0) for disc in discs]
@@ -368,12 +422,12 @@ def _idle_disc(discs: Sequence[_Disc], crank_angle: float, moment: float) -> int
 
 
 def _solutions(
-    models: Sequence[DriveModel],
+    models: Sequence[PlacedContacts],
     found: Sequence[PoseSolution],
     results: Sequence[ContactResults],
     options: SolutionOptions,
     rounds: tuple[RoundGroup, ...],
-    watch: _Stopwatch,
+    watch: Stopwatch,
 ) -> tuple[FullSolution, ...]:
     seconds = watch.total()
     return tuple(
@@ -382,7 +436,6 @@ def _solutions(
             state=own,
             contacts=contacts,
             options=options,
-            pose_iterations=own.iterations,
             rounds=rounds,
             seconds=seconds,
         )
@@ -414,7 +467,7 @@ def solve_again(
     progress: Callable[[str], None] | None = None,
 ) -> tuple[FullSolution, ...]:
     """Solve all discs of a drive from a solution on its meshes, which are kept; whether they serve is not asked."""
-    watch, options = _Stopwatch(), previous[0].options
+    watch, options = Stopwatch(), previous[0].options
     models = [each.model for each in previous]
     found = solve_poses(
         models,
@@ -467,11 +520,11 @@ def refine_discs(
     MemoryLimitError
         When the refined meshes would not fit into memory.
     """
-    say, watch, options = progress or (lambda _: None), _Stopwatch(), coarse[0].options
+    say, watch, options = progress or (lambda _: None), Stopwatch(), coarse[0].options
     options = replace(options, halvings=options.halvings + 1)
     unknowns = sum(own.refined_unknowns for own in coarse)
     require_memory(unknowns, solution_memory(unknowns), "the refined mesh")
-    models, rounds = list[DriveModel](), tuple[RoundGroup, ...]()
+    models, rounds = list[PlacedContacts](), tuple[RoundGroup, ...]()
     for own in coarse:
         say(f"meshes halved, {own.refined_unknowns:,} unknowns")
         meshes = own.meshes.refined(own.shapes)

@@ -71,7 +71,7 @@ def place_bodies(meshes: DriveMeshes, placement: Placement, contacts: ExpectedCo
     race_centre = complex(placement.races(np.asarray(angle)).middle)
     disc_centre = race_centre + complex(contacts.disc_x, contacts.disc_y)
     wheel_turn = angle / placement.reduction_ratio + contacts.wheel_angle
-    pin_places = placement.wheel_pin_centres * np.exp(1j * wheel_turn)
+    pin_places = placement.wheel_axis + placement.wheel_pin_centres * np.exp(1j * wheel_turn)
     rays = np.exp(1j * placement.roller_angles(np.asarray(angle)))
     races, own = placement.races(np.asarray(angle)).centre, placement.roller_cranks
     shift = complex(contacts.disc_x, contacts.disc_y)

@@ -12,19 +12,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fem.drive.expected_contacts import expect_contacts
 from fem.drive.full_solution import CoarseSolution, FullSolution
 from fem.drive.meshes import require_model_memory
 from fem.drive.model import RoundGroup
-from fem.drive.pose import POSE_TOLERANCE as ROUGH_POSE, WheelLoad, forces_on_supports
-from fem.drive.solution import refine_discs, require_zones, solve_again, solve_discs
-from fem.drive.supports import ring_of_seats
+from fem.drive.pose import POSE_TOLERANCE as ROUGH_POSE, WheelLoad, forces_on_supports, joint_problem
+from fem.drive.solution import plane_discs, refine_discs, require_zones, solve_again, solve_discs
+from fem.drive.supports import Supports, ring_of_seats
 from fem.options import DEFAULT_OPTIONS, SolutionOptions
-from fem.shapes import DriveShapes
+from fem.solid_drive.solved_discs import solve_solid_discs
 from ltca.arrays import ComplexArray, FloatArray
 from ltca.drive.engine_support import require
 from ltca.drive.parts import Drive
-from ltca.drive.single_discs import single_discs
 from ltca.drive.unit_mistakes import names_unit_mistakes
 
 POSE_TOLERANCE = 1e-7
@@ -94,13 +92,11 @@ class ReducerSolution:
         on_wheel, _, _ = forces_on_supports(
             [disc.model for disc in self.discs],
             [disc.pose for disc in self.discs],
-            [disc.pair_forces for disc in self.discs],
+            [disc.state.integrals for disc in self.discs],
+            [disc.state.contact.pressure for disc in self.discs],
         )
         total = on_wheel.sum(axis=0)
-        flat = (
-            ring_of_seats(self.drive, self.discs[0].options.halvings)
-            @ np.column_stack([total.real, total.imag]).ravel()
-        )
+        flat = ring_of_seats(self.drive, self.options.halvings) @ np.column_stack([total.real, total.imag]).ravel()
         moved = flat[0::2] + 1j * flat[1::2]
         return np.asarray(moved * np.exp(-2j * np.pi * np.arange(moved.size) / moved.size))
 
@@ -108,6 +104,26 @@ class ReducerSolution:
     def equilibrium_residual(self) -> float:
         """Largest unbalanced force, N."""
         return max(disc.contacts.equilibrium_residual for disc in self.discs)
+
+    @property
+    def solid(self) -> bool:
+        """Whether the bodies are solid."""
+        return self.options.layers > 0
+
+    @property
+    def options(self) -> SolutionOptions:
+        """How it was solved."""
+        return self.discs[0].options
+
+    @property
+    def strain_energy(self) -> float:
+        """Half of the pressures on what they displace: of all bodies and of what holds pins and cranks, N·mm."""
+        models, states = [disc.model for disc in self.discs], [disc.state for disc in self.discs]
+        poses, integrals = [state.pose for state in states], [list(state.integrals) for state in states]
+        supports = Supports.of_drive(self.drive, self.options.halvings)
+        pressure = np.concatenate([state.contact.pressure for state in states])
+        compliance = joint_problem(models, supports, poses, integrals, 0.0).compliance
+        return 0.5 * float(pressure @ compliance @ pressure)
 
     @property
     def coarse(self) -> tuple[CoarseSolution, ...]:
@@ -144,7 +160,7 @@ def solve_reducer(
     crank_angle : float
         φ_C, rad.
     options : SolutionOptions
-        Element size, plane state, fine walls.
+        Element size, plane state, fine walls; layers of solid bodies.
     torque : float, optional
         Output torque, N·mm; the drive's own by default.
     rounds : tuple of RoundGroup
@@ -178,18 +194,16 @@ def solve_reducer(
     >>> print(f"{found.wheel_angle * 206264.8:.0f}″")
     -465″
     """
-    require(drive, "full FE")
+    require(drive, "solid disc" if options.layers else "full FE")
     drive.require_torque("full finite elements, whose loads follow those of the torque", torque)
     alone = drive.disc.number_of_discs == 1 and not drive.wheel_is_held
-    found = solve_discs(
-        drive,
-        float(crank_angle),
-        WheelLoad.of_drive(drive, torque),
-        options,
-        rounds=rounds,
-        pose_tolerance=ROUGH_POSE if alone else POSE_TOLERANCE,
-        progress=progress,
-    )
+    tolerance, load = ROUGH_POSE if alone else POSE_TOLERANCE, WheelLoad.of_drive(drive, torque)
+    if options.layers:
+        found = solve_solid_discs(drive, float(crank_angle), load, options, pose_tolerance=tolerance, progress=progress)
+    else:
+        found = solve_discs(
+            drive, float(crank_angle), load, options, rounds=rounds, pose_tolerance=tolerance, progress=progress
+        )
     return ReducerSolution.of_discs(drive, drive.load.torque if torque is None else torque, found)
 
 
@@ -248,9 +262,5 @@ def solve_refined(
 
 def require_solution_memory(drive: Drive, crank_angle: float, options: SolutionOptions) -> None:
     """Raise MemoryLimitError when the full solution of a drive would not fit into memory, before any meshing."""
-    singles = single_discs(drive)
-    moment = drive.wheel_moment() / len(singles)
-    guesses = [expect_contacts(single, crank_angle, wheel_moment=moment) for single in singles]
-    require_model_memory(
-        [(DriveShapes.of_drive(single), guess) for single, guess in zip(singles, guesses, strict=True)], options
-    )
+    discs = plane_discs(drive, crank_angle, WheelLoad.of_drive(drive))
+    require_model_memory([(disc.shapes, disc.guess) for disc in discs], options)

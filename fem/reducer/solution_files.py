@@ -13,8 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from fem.contact.pressure_measures import vertex_means
-from fem.drive.contact_kinds import CONTACT_KINDS
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.disc_stress import DiscStress, recover_disc_stress, stress_variables, summarise_stress
 from fem.drive.fields import BodyField, bore_motion
 from fem.drive.full_solution import FullSolution
@@ -23,6 +22,15 @@ from fem.reducer.error_table import error_content
 from fem.reducer.nested_meshes import NestedSolution
 from fem.reducer.solution import ReducerSolution
 from fem.reducer.verdict import judge_solution
+from fem.solid_drive.width_results import (
+    bearing_couples,
+    bore_lean,
+    disc_lean,
+    pressures_over,
+    roller_leans,
+    width_results,
+)
+from ltca.arrays import FloatArray
 from ltca.drive.hole_contact import RIGID_SHAFT_PINS, shaft_pins_yield
 from ltca.drive.members.judgement import Check
 from ltca.drive.members.limits import Limit
@@ -44,51 +52,114 @@ ARRAYS = tuple(getattr(kind, name) for name in ("load", "pressure", "half_width"
 MULTI_BLOCK = "fem.vtm"
 
 
+LARGEST: dict[PairKind, str] = {
+    "pin": "pin_pressure_max",
+    "roller_outer": "roller_pressure_max_outer",
+    "roller_inner": "roller_pressure_max_inner",
+    "hole": "pin_shaft_pressure_max",
+}
+"""Names of the largest pressure anywhere along the width of solid bodies, by kinds of contacts."""
+POSE = ("disc_x", "disc_y", "disc_rotation", "disc_area_x", "disc_area_y", "disc_area_rotation")
+
+
+def numbers_of(solution: ReducerSolution) -> dict[str, Any]:
+    """Return the results by their names in `ltca.quantities`: of the drive, or by disc and then by crank and part."""
+    discs, poses = solution.discs, [disc.pose for disc in solution.discs]
+    bearings, motions = np.array([disc.bearing_components for disc in discs]), [bore_motion(disc) for disc in discs]
+    found: dict[str, Any] = {name: [getattr(disc.contacts, name) for disc in discs] for name in ARRAYS}
+    found |= {
+        "wheel_angle": solution.wheel_angle,
+        "transmission_error": solution.transmission_error,
+        "wheel_moment": solution.wheel_moment,
+        "disc_torque": solution.disc_torques,
+        "disc_x": [shift.real for shift, _ in motions],
+        "disc_y": [shift.imag for shift, _ in motions],
+        "disc_rotation": [rotation for _, rotation in motions],
+        "disc_area_x": [pose.disc_x for pose in poses],
+        "disc_area_y": [pose.disc_y for pose in poses],
+        "disc_area_rotation": [pose.disc_rotation for pose in poses],
+        "bearing_radial": bearings[..., 0],
+        "bearing_tangential": bearings[..., 1],
+        "equilibrium_residual": solution.equilibrium_residual,
+    }
+    if (ring := solution.ring_displacements) is not None:
+        found |= {"ring_displacement_radial": ring.real, "ring_displacement_tangential": ring.imag}
+    if not solution.solid:
+        return found
+    for kind, name in LARGEST.items():
+        found[name] = [np.zeros(getattr(disc.contacts, CONTACT_KINDS[kind].load).size) for disc in discs]
+        for largest, disc in zip(found[name], discs, strict=True):
+            for pair, along in zip(disc.model.pairs, width_results(disc), strict=True):
+                if pair.kind == kind:
+                    largest[pair.index] = along.largest.max()
+    # As rotations about x and y.
+    leans, couples = np.array([bore_lean(disc) for disc in discs]), np.array([bearing_couples(disc) for disc in discs])
+    return found | {
+        "disc_tilt": np.stack([-leans.imag, leans.real], axis=-1),
+        "crank_bearing_moment": np.stack([-couples.imag, couples.real], axis=-1),
+    }
+
+
 def summarise(solution: ReducerSolution) -> dict[str, Any]:
     """Return the content of ``summary.json``: lists by disc, then by part; of full length, zeros included.
 
     A value of a disc is a number with one disc, else a list by disc; with several cranks bearing forces are lists by
-    crank. Rollers follow each other crank after crank.
+    crank. Of one solid disc all lists are by part alone. Rollers follow each other crank after crank.
     """
     discs = solution.discs
-    content: dict[str, Any] = {}
-    for name in ARRAYS:
-        values = [getattr(disc.contacts, name).tolist() for disc in discs]
-        content |= dict.fromkeys((QUANTITIES[name].older_fem_key, QUANTITIES[name].fem_key), values)
+    content: dict[str, Any] = {QUANTITIES["crank_angle"].fem_key: solution.crank_angle}
 
-    def each(values: list[Any]) -> Any:
+    def bare(values: Any) -> Any:
         return values[0] if len(values) == 1 else values
 
-    def by_crank(column: int) -> Any:
-        return each([each(disc.bearing_components[:, column].tolist()) for disc in discs])
-
+    for name, values in numbers_of(solution).items():
+        quantity, listed = QUANTITIES[name], np.asarray(values, dtype=float).tolist()
+        if name in POSE and not solution.solid:
+            continue
+        by_crank = "crank" in quantity.dimensions and "roller" not in quantity.dimensions
+        if by_crank:
+            listed = [bare(of_disc) for of_disc in listed]
+        if "disc" in quantity.dimensions and (solution.solid or by_crank):
+            listed = bare(listed)
+        keys = (quantity.fem_key,) if solution.solid else (quantity.older_fem_key, quantity.fem_key)
+        content |= dict.fromkeys(keys, listed)
     content |= {
-        QUANTITIES["crank_angle"].fem_key: solution.crank_angle,
-        QUANTITIES["wheel_moment"].fem_key: solution.wheel_moment,
-        QUANTITIES["disc_torque"].fem_key: [float(value) for value in solution.disc_torques],
         "torque_share": [float(value) for value in solution.torque_share],
-        QUANTITIES["wheel_angle"].fem_key: solution.wheel_angle,
-        QUANTITIES["transmission_error"].fem_key: solution.transmission_error,
-        "disc_displacement": each([_motion(*bore_motion(disc)) for disc in discs]),
-        "disc_displacement_area": each(
+        "disc_displacement": bare([_motion(*bore_motion(disc)) for disc in discs]),
+        "disc_displacement_area": bare(
             [_motion(disc.pose.disc_displacement, disc.pose.disc_rotation) for disc in discs]
         ),
-        QUANTITIES["bearing_radial"].fem_key: by_crank(0),
-        QUANTITIES["bearing_tangential"].fem_key: by_crank(1),
-        QUANTITIES["equilibrium_residual"].fem_key: solution.equilibrium_residual,
-        "pose_iterations": each([disc.pose_iterations for disc in discs]),
+        "pose_iterations": bare([disc.pose_iterations for disc in discs]),
         "dof": solution.unknowns,
-        "size": discs[0].options.refined_size,
-        "plane_state": discs[0].options.plane,
+        "size": solution.options.refined_size,
         "held": solution.drive.installation.held,
         "fingerprint": solution.drive.fingerprint(),
         "seconds": solution.seconds["total"],
         "seconds_by_stage": {stage: value for stage, value in solution.seconds.items() if stage != "total"},
     }
-    if (ring := solution.ring_displacements) is not None:
-        content[QUANTITIES["ring_displacement_radial"].fem_key] = ring.real.tolist()
-        content[QUANTITIES["ring_displacement_tangential"].fem_key] = ring.imag.tolist()
-    return content
+    if not solution.solid:
+        return content | {"plane_state": solution.options.plane}
+    return content | {
+        "bodies": "solid",
+        "layers": solution.options.layers,
+        "contacts": bare([_along_width(disc) for disc in discs]),
+        "roller_lean_rad": bare([roller_leans(disc).tolist() for disc in discs]),
+        "disc_volume_tilt_rad": bare([[-disc_lean(disc).imag, disc_lean(disc).real] for disc in discs]),
+        "strain_energy_N_mm": solution.strain_energy,
+    }
+
+
+def _along_width(disc: FullSolution) -> dict[str, dict[str, float]]:
+    """Load, moment and load factor of every contact that carries, by its name."""
+    return {
+        CONTACT_KINDS[pair.kind].name_of(pair.index, disc.model.placement): {
+            "load_N": along.load,
+            "moment_N_mm": along.moment,
+            "face_load_factor": along.load_factor,
+        }
+        for pair, along in zip(disc.model.pairs, width_results(disc), strict=True)
+        if along.load > 0.0
+    }
 
 
 def _motion(shift: complex, rotation: float) -> dict[str, float]:
@@ -102,51 +173,30 @@ def build_dataset(solution: ReducerSolution, case: str) -> xr.Dataset:
 
 def label_solution(solution: ReducerSolution, case: str, stresses: Sequence[DiscStress] = ()) -> LabelledDataset:
     """Return what `build_dataset` holds without xarray, whose import takes half a second, and the stress in each disc."""
-    discs, options = solution.discs, solution.discs[0].options
-    sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1}
+    discs, options = solution.discs, solution.options
+    sizes = {"case": 1, "disc": len(discs), "crank": solution.drive.crank.number, "position": 1, "axis": 2}
     data: dict[str, Any] = {}
-
-    def add(name: str, values: Any) -> None:
-        """Put values of the drive, or by disc and then by crank and part, in the dimensions of the quantity."""
+    for name, values in numbers_of(solution).items():
         quantity = QUANTITIES[name]
         shape = [sizes.get(dimension, -1) for dimension in quantity.dimensions]
         data[name] = quantity.labelled(np.asarray(values, dtype=float).reshape(shape), in_fem=True)
-
-    for name in ARRAYS:
-        add(name, [getattr(disc.contacts, name) for disc in discs])
     if not shaft_pins_yield(solution.drive):
         data["pin_shaft_pressure_mid"][2]["long_name"] += f"; {RIGID_SHAFT_PINS}"
-    bearings = np.array([disc.bearing_components for disc in discs])
-    motions = [bore_motion(disc) for disc in discs]
-    bore, bore_rotation = np.array([shift for shift, _ in motions]), [rotation for _, rotation in motions]
-    poses = [disc.pose for disc in discs]
-    for name, value in (
-        ("wheel_angle", solution.wheel_angle),
-        ("transmission_error", solution.transmission_error),
-        ("wheel_moment", solution.wheel_moment),
-        ("disc_torque", solution.disc_torques),
-        ("disc_x", bore.real),
-        ("disc_y", bore.imag),
-        ("disc_rotation", bore_rotation),
-        ("disc_area_x", [pose.disc_x for pose in poses]),
-        ("disc_area_y", [pose.disc_y for pose in poses]),
-        ("disc_area_rotation", [pose.disc_rotation for pose in poses]),
-        ("bearing_radial", bearings[..., 0]),
-        ("bearing_tangential", bearings[..., 1]),
-        ("equilibrium_residual", solution.equilibrium_residual),
-    ):
-        add(name, value)
-    if (ring := solution.ring_displacements) is not None:
-        add("ring_displacement_radial", ring.real)
-        add("ring_displacement_tangential", ring.imag)
-    data |= {name: QUANTITIES[name].labelled(values) for name, values in _pressure_profiles(discs).items()}
+    heights, listed = _pressures(discs)
+    data |= {name: QUANTITIES[name].labelled(values) for name, values in listed.items()}
     coordinates = place_coordinates(
         {case: solution.drive}, [[disc.model.placement for disc in discs]], np.atleast_1d(solution.crank_angle)
     ) | {"torque": QUANTITIES["torque"].labelled([solution.torque], in_fem=True)}
+    if solution.solid:
+        told = {"units": "mm", "long_name": "height above mid-width"}
+        data["pressure_height"] = QUANTITIES["pressure_place"].dimensions, heights, told
+        bodies: dict[str, Any] = {"model": "finite elements, solid bodies", "layers": options.layers}
+    else:
+        bodies = {"model": f"finite elements, plane {options.plane}", "plane": options.plane}
     attributes = {
         "Conventions": "CF-1.11",
         "schema_version": SCHEMA_VERSION,
-        "title": f"full finite-element solution of {solution.drive.name}",
+        "title": f"full finite-element solution of {solution.drive.name}{' with solid bodies' * solution.solid}",
         "source": f"cyclo {code_version()}",
         "version": code_version(),
         "code_hash": code_hash("ltca", "fem"),
@@ -154,30 +204,29 @@ def label_solution(solution: ReducerSolution, case: str, stresses: Sequence[Disc
         "drive_file": drive_text(solution.drive),
         "fingerprint": solution.drive.fingerprint(),
         "held": solution.drive.installation.held,
-        "model": f"finite elements, plane {options.plane}",
-        "plane": options.plane,
         "elastic_shaft_pins": int(bool(discs[0].model.meshes.shaft_pins)),
         "size": options.refined_size,
         "unknowns": solution.unknowns,
     }
     if stresses:
         data |= stress_variables(stresses)
-    return LabelledDataset.build(data, coordinates, attributes)
+    return LabelledDataset.build(data, coordinates, attributes | bodies)
 
 
-def _pressure_profiles(discs: tuple[FullSolution, ...]) -> dict[str, Any]:
-    numbers, kinds, indices, places, values = [], [], [], [], []
+def _pressures(discs: tuple[FullSolution, ...]) -> tuple[FloatArray, dict[str, Any]]:
+    """Heights of the vertices of all contacts that carry, mm, and their pressures, with their places on the arc."""
+    numbers, kinds, indices, places, heights, values = [], [], [], [], [], []
     for number, disc in enumerate(discs):
         for pair, detail in zip(disc.model.pairs, disc.contacts.details, strict=True):
             if detail.load > 0.0:
-                arc = pair.zone.arc
-                numbers.append(np.full(len(arc), number))
-                kinds.append(np.full(len(arc), pair.kind))
-                indices.append(np.full(len(arc), pair.index))
-                places.append(arc - detail.middle)
-                own = pair.zone.at_vertices(disc.state.contact.pressure[pair.unknowns])
-                values.append(vertex_means(arc, own))
-    return {
+                height, own = pressures_over(disc, pair)
+                numbers.append(np.full(own.size, number))
+                kinds.append(np.full(own.size, pair.kind))
+                indices.append(np.full(own.size, pair.index))
+                places.append(np.repeat(pair.zone.arc - detail.middle, height.size))
+                heights.append(np.tile(height, len(own)))
+                values.append(own.ravel())
+    return np.concatenate(heights), {
         "pressure_contact": np.concatenate(kinds).astype(str),
         "pressure_disc": np.concatenate(numbers),
         "pressure_part": np.concatenate(indices),
@@ -197,8 +246,14 @@ def write_solution(
     """Write all files of a solution and return its verdict, as ``summary.json`` holds it; `fields` by disc (`recover_fields`).
 
     The key ``error`` of ``summary.json`` holds the error bars of the solutions on `nested` meshes, of which this is the finest.
-    Each file appears only when it is complete, ``fem.vtm`` only over bodies of this solution.
+    Each file appears only when it is complete, ``fem.vtm`` only over bodies of this solution. Solid bodies have neither fields
+    nor a verdict.
     """
+    if solution.solid:
+        with whole_file(folder / "fem.nc") as part:
+            write_netcdf(label_solution(solution, case), part)
+        write_json(folder / "summary.json", summarise(solution))
+        return []
     index = folder / MULTI_BLOCK
     try:
         # An older one would point at bodies of two solutions if this one is cut short.

@@ -1,18 +1,19 @@
-"""``report.html`` of a full solution: verdict, pictures and contacts of every disc, the drive."""
+"""``report.html`` of a full solution: verdict, pictures and contacts of every disc, line loads of solid ones, the drive."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from math import degrees
 
-from fem.drive.contact_kinds import CONTACT_KINDS
+from fem.drive.contact_kinds import CONTACT_KINDS, PairKind
 from fem.drive.full_solution import FullSolution
 from fem.reducer.error_table import error_section
 from fem.reducer.nested_meshes import NestedSolution
 from fem.reducer.solution import ReducerSolution
+from fem.reducer.solution_words import columns_of, contact_rows, disc_facts, drive_facts
+from fem.solid_drive.width_results import width_results
 from ltca.drive.members.judgement import Check
-from ltca.drive.units.quantities import ARCSEC
-from ltca.page.study_page import Picture, Section, StudyPage
+from ltca.page.study_page import Curves, Picture, Section, StudyPage
 from ltca.page.tables import Cell, Table, folded, minus, number, texts, word
 from ltca.page.verdict_tables import verdict_of, verdict_tables
 
@@ -27,13 +28,15 @@ def solution_page(
     pictures: Sequence[Sequence[Picture]] = (),
     nested: NestedSolution | None = None,
 ) -> StudyPage:
-    """Return the page of a full solution with its verdict.
+    """Return the page of a full solution, of plane bodies with its verdict.
 
     `told` describes the problem, `text` is the drive file, `loads` is the drive with its loads, and `pictures` are those of
     the stress in every disc, none where they were left out; error bars are those of solutions on `nested` meshes.
     """
-    sentence, state = verdict_of({case: checks})
-    sections = [Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks})))]
+    sections, sentence, state = list[Section](), "", ""
+    if not solution.solid:
+        sentence, state = verdict_of({case: checks})
+        sections.append(Section(heading="Verdict at this position", tables=folded(verdict_tables({case: checks}))))
     sections.append(Section(heading="The drive under load", pictures=[loads]))
     if nested is not None:
         sections.append(error_section(nested))
@@ -43,38 +46,44 @@ def solution_page(
             Section(heading=f"Stress and displacement{f' of disc {place}' if several else ''}", pictures=own)
         )
     for place, disc in enumerate(solution.discs):
-        of = f" of disc {place}" if several else ""
-        columns = ["contact", "load, N", "largest pressure, MPa", "half-width, µm"]
-        contacts = Table(name=f"contacts{place}", caption="", columns=columns, rows=[*_contacts(disc)])
-        cranks = disc.bearing_components.tolist()
-        notes = [
-            minus(
-                f"Bearing force on the disc{f' at crank {crank}' if len(cranks) > 1 else ''}: radial {radial:.1f} N, "
-                f"tangential {tangential:.1f} N."
-            )
-            for crank, (radial, tangential) in enumerate(cranks)
+        of, columns = f" of disc {place}" if several else "", columns_of(disc)
+        rows: list[list[Cell]] = [
+            [
+                word(title),
+                *(number(value, f"{{:{column.form}}}") for column, value in zip(columns, numbers, strict=True)),
+            ]
+            for _, title, numbers in contact_rows(disc)
         ]
-        if several:
-            notes.append(f"It carries {100.0 * float(solution.torque_share[place]):.2f} % of the torque.")
+        titles = ["contact", *(column.title for column in columns)]
+        contacts = Table(name=f"contacts{place}", caption="", columns=titles, rows=rows)
+        notes = [minus(f"{title[0].upper()}{title[1:]}: {words}.") for title, words in disc_facts(solution, place)]
         sections.append(Section(heading=f"Contacts{of}", notes=notes, tables=[contacts]))
-    rows = [
-        ("crank angle", f"{degrees(solution.crank_angle):.6g}° = {solution.crank_angle:.6g} rad"),
-        ("wheel angle", f"{solution.wheel_angle * ARCSEC:.6g}″ = {solution.wheel_angle:.6g} rad"),
-        ("moment on the wheel", f"{solution.wheel_moment / 1e3:.6g} N·m"),
-        ("largest unbalanced force", f"{solution.equilibrium_residual:.1e} N"),
-        ("unknowns", f"{solution.unknowns}"),
-    ]
-    drive = Table(name="drive", caption="", columns=["", "value"], rows=texts(rows), words=1)
+        if solution.solid:
+            sections.append(Section(heading=f"Along the width{of}", curves=[*_line_loads(disc)]))
+    angle = f"{degrees(solution.crank_angle):.6g}° = {solution.crank_angle:.6g} rad"
+    facts = [(title, minus(words)) for title, words in drive_facts(solution)]
+    drive = Table(
+        name="drive", caption="", columns=["", "value"], rows=texts([("crank angle", angle), *facts]), words=1
+    )
     sections.append(Section(heading="The drive", tables=[drive]))
     return StudyPage(name=solution.drive.name, told=told, sentence=sentence, state=state, sections=sections, text=text)
 
 
-def _contacts(solution: FullSolution) -> Iterator[list[Cell]]:
-    """Yield a row for each loaded contact."""
-    for kind, index, load, peak, width in solution.contacts.loaded:
-        yield [
-            word(CONTACT_KINDS[kind].title_of(index, solution.model.placement)),
-            number(load, "{:.1f}"),
-            number(peak, "{:.1f}"),
-            number(1e3 * width, "{:.1f}"),
-        ]
+def _line_loads(disc: FullSolution) -> Iterator[Curves]:
+    """Yield the line loads of the contacts that carry, kind by kind."""
+    titles: dict[PairKind, str] = {
+        "pin": "wheel pins on the flank",
+        "hole": "shaft pins in their holes",
+        "roller_outer": "rollers in the bore",
+        "roller_inner": "rollers on the race",
+    }
+    along = [*zip(disc.model.pairs, width_results(disc), strict=True)]
+    for kind, title in titles.items():
+        own = [(pair, each) for pair, each in along if pair.kind == kind and each.load > 0.0]
+        if own:
+            place = disc.model.placement
+            lines = {CONTACT_KINDS[kind].name_of(pair.index, place): each.line_load for pair, each in own}
+            heights = own[0][1].heights
+            yield Curves(
+                title=f"line load of {title}", unit="N/mm", axis="height above mid-width, mm", x=heights, lines=lines
+            )

@@ -210,7 +210,7 @@ def _carrier_name(model: DriveModel, pair: ContactPair) -> str:
 
 def _add_bodies(deck: _Deck, solution: FullSolution, pairs: list[ContactPair]) -> None:
     """Disc, races, then pins and rollers; `slave_faces` counts on this order."""
-    model, pose = solution.model, solution.pose
+    model, pose = solution.plane, solution.pose
     materials, thickness = model.drive.materials, model.drive.disc.thickness
     deck.add_body("DISC", model.meshes.disc, model.disc_pose(pose), materials.disc, thickness)
     for crank, centre in enumerate(model.race_centres.tolist()):
@@ -227,7 +227,7 @@ def _add_bodies(deck: _Deck, solution: FullSolution, pairs: list[ContactPair]) -
 
 def _add_contact(deck: _Deck, solution: FullSolution, pair: ContactPair, penalty: float) -> None:
     """Write both surfaces of a pair and what acts between them."""
-    model, pose = solution.model, solution.pose
+    model, pose = solution.plane, solution.pose
     drive, name = model.drive, pair_name(pair)
     carrier, _, elements = deck.placed[_carrier_name(model, pair)]
     faces = _faces(carrier, pair.zone.nodes[:, 1], elements)
@@ -347,7 +347,7 @@ def _add_spring(deck: _Deck, reference: int, index: int, stiffness: float, displ
 
 def _carry_shaft_pin(deck: _Deck, solution: FullSolution, pair: ContactPair) -> None:
     """Carry an elastic shaft pin evenly over its cross-section on its spring, without rotation."""
-    model, pose = solution.model, solution.pose
+    model, pose = solution.plane, solution.pose
     body, offset, _ = deck.placed[_body_name(pair)]
     reference = deck.add_nodes(np.array([model.circle_centre("hole", pair.index, pose)])) + 1
     displaced = complex(pose.shaft_pin_displacements[pair.index])

@@ -38,6 +38,9 @@ MANY_LOADS = 128
 Held = Callable[[ExtrudedBody], BoolArray]
 """Which unknowns of a body in its class are held at zero."""
 
+Probes = Callable[[ExtrudedBody], sp.spmatrix]
+"""Weights of the unknowns of a body in its class in displacements to be known of it later, shape (probes, unknowns)."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Face:
@@ -108,23 +111,20 @@ class CondensedSolid:
     faces : tuple of Face
         In the order of their pressures.
     classes : tuple of CondensedClass
-        Symmetric, or symmetric and antisymmetric, or whole.
+        Symmetric, or symmetric and antisymmetric, or whole; none of a body without its factors.
+    compliance : array, shape (pressures, pressures)
+        Weighted gap opened by a unit of each pressure, mm·mm² by MPa.
+    unknowns : int
+        Displacements of all classes.
+    probed : array, shape (probes, pressures)
+        Displacements at the probes of all classes, one class after the other, by a unit of each pressure.
     """
 
     faces: tuple[Face, ...]
     classes: tuple[CondensedClass, ...]
-
-    @property
-    def unknowns(self) -> int:
-        """Number of unknowns of all classes."""
-        return sum(each.body.unknowns for each in self.classes)
-
-    @property
-    def compliance(self) -> FloatArray:
-        """Weighted gap opened by a unit of each pressure, shape (pressures, pressures), mm·mm² by MPa."""
-        total = sum(each.onto_class.T @ (each.onto_class.T @ each.compliance).T for each in self.classes)
-        matrix = np.asarray(total)
-        return np.asarray(0.5 * (matrix + matrix.T))
+    compliance: FloatArray
+    unknowns: int
+    probed: FloatArray
 
     @property
     def motions(self) -> FloatArray:
@@ -143,6 +143,9 @@ def condense_solid(
     faces: Sequence[Face],
     held: Held | None,
     progress: Callable[[str], None] = lambda _: None,
+    *,
+    probes: Probes | None = None,
+    keep_factors: bool = True,
 ) -> CondensedSolid:
     """Factorise a body in its classes and reduce it to the pressures on its faces.
 
@@ -161,6 +164,10 @@ def condense_solid(
         Which unknowns are held; None for a floating body.
     progress : callable, optional
         Is told each class.
+    probes : callable, optional
+        Displacements to be known when the factors are gone.
+    keep_factors : bool
+        Whether other displacements and the energy by the stiffness can be asked for; else one class is in memory at a time.
 
     Raises
     ------
@@ -173,11 +180,26 @@ def condense_solid(
         raise MeshError(
             f"{section.name}: pressures need the class {sorted(missing)[0]!r}, of which no layers are given"
         )
-    found = []
+    found, unknowns, measured = [], 0, [np.zeros((0, sum(face.size for face in faces)))]
+    compliance = np.zeros((measured[0].shape[1],) * 2)
     for each in layers:
         progress(f"{section.name}, {each.parity}")
-        found.append(_condense_class(ExtrudedBody(section=section, layers=each), material, faces, held, layers))
-    return CondensedSolid(faces=tuple(faces), classes=tuple(found))
+        body = ExtrudedBody(section=section, layers=each)
+        wanted = sp.csr_matrix((0, body.unknowns) if probes is None else probes(body))
+        own, at_probes = _condense_class(body, material, faces, held, layers, wanted)
+        compliance += np.asarray(own.onto_class.T @ (own.onto_class.T @ own.compliance).T)
+        measured.append(np.asarray((own.onto_class.T @ at_probes.T).T))
+        unknowns += body.unknowns
+        if keep_factors:
+            found.append(own)
+        del own
+    return CondensedSolid(
+        faces=tuple(faces),
+        classes=tuple(found),
+        compliance=0.5 * (compliance + compliance.T),
+        unknowns=unknowns,
+        probed=np.concatenate(measured),
+    )
 
 
 def spread_face(body: ExtrudedBody, face: Face) -> sp.csc_matrix:
@@ -204,7 +226,9 @@ def _condense_class(
     faces: Sequence[Face],
     held: Held | None,
     layers: Sequence[Layers],
-) -> CondensedClass:
+    probes: sp.csr_matrix,
+) -> tuple[CondensedClass, FloatArray]:
+    """The body in one class, and its displacements at probes by a unit of each load of the class."""
     parity = body.layers.parity
     parts, onto = [], []
     for face in faces:
@@ -229,13 +253,14 @@ def _condense_class(
     unknowns = order_unknowns(body)
     count = loads.shape[1]
     factor = SymmetricFactor(stiffness, unknowns[~still[unknowns]], many_loads=count > MANY_LOADS)
-    compliance = np.zeros((count, count))
+    compliance, probed = np.zeros((count, count)), np.zeros((probes.shape[0], count))
     transposed = loads.T.tocsr()
     for first in range(0, count, BLOCK):
         own = slice(first, first + BLOCK)
-        compliance[:, own] = transposed @ _solve(factor, loads[:, own].toarray(), balance)
+        moved = _solve(factor, loads[:, own].toarray(), balance)
+        compliance[:, own], probed[:, own] = transposed @ moved, probes @ moved
     resultants = np.zeros((0, count)) if balance is None else np.asarray((loads.T @ balance[0]).T)
-    return CondensedClass(
+    condensed = CondensedClass(
         body=body,
         compliance=0.5 * (compliance + compliance.T),
         resultants=resultants,
@@ -245,6 +270,7 @@ def _condense_class(
         _factor=factor,
         _balance=balance,
     )
+    return condensed, probed
 
 
 def _solve(factor: SymmetricFactor, forces: FloatArray, balance: tuple[FloatArray, FloatArray] | None) -> FloatArray:

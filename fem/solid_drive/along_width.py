@@ -1,4 +1,4 @@
-"""What of a drive varies along the width: lengths, layers, reliefs and leans; and the drive without it.
+"""What of a drive varies along the width: lengths, layers, reliefs and leans.
 
 Disc, wheel pins, shaft pins and inner race are as long as the disc is thick; rollers are as long as they are, no longer than
 that, and so are their contacts.
@@ -6,7 +6,7 @@ that, and so are their contacts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,8 +14,7 @@ from fem.drive.model import ContactPair, DrivePose, PlacedContacts
 from fem.solid.layer_count import require_layers
 from fem.solid.layers import Layers, Parity, graded_layers
 from fem.solid_contact.widths import WidthGrid
-from ltca.drive.members.width import Contact, Inclination
-from ltca.drive.parts import Drive, LengthProfile, PlacementErrors
+from ltca.drive.parts import Drive
 from ltca.geometry.placement import Placement
 
 FINEST = 0.4
@@ -90,44 +89,3 @@ def lean_apart(model: PlacedContacts, pair: ContactPair, pose: DrivePose) -> com
     ray, crank = complex(model.roller_rays[pair.index]), complex(place.crank_lean)
     across = crank - ray * (ray.conjugate() * crank).real
     return across - crank if pair.kind == "roller_inner" else across
-
-
-def plane_part(drive: Drive) -> Drive:
-    """Return a drive of one disc as it is at mid-width: nothing leans, flanks, pins and rollers are straight and as long.
-
-    Examples
-    --------
-    >>> from ltca.reading.changes import with_fields
-    >>> from ltca.reading.drive_file import load_drive
-    >>> drive = load_drive("paper").cases["CS-1"]
-    >>> leaning = with_fields(drive, {"contact.slices": 5, "disc.lead_slope": 1e-4, "crank_bearing.roller_length": 10.0})
-    >>> plane = plane_part(leaning)
-    >>> plane.contact.slices, plane.disc.lead_slope, plane.roller_length
-    (1, 0.0, 11.8)
-    """
-
-    def upright(errors: PlacementErrors) -> PlacementErrors:
-        return replace(errors, inclination_x=(), inclination_y=())
-
-    disc, wheel, shaft, bearing = drive.disc, drive.pin_wheel, drive.pin_shaft, drive.crank_bearing
-    return replace(
-        drive,
-        contact=Contact(),
-        crank=replace(drive.crank, inclination=Inclination()),
-        disc=replace(
-            disc,
-            lead_crown_drop=0.0,
-            lead_relief_length=0.0,
-            lead_relief_depth=0.0,
-            lead_slope=0.0,
-            axial_play=None,
-            hole_errors=upright(disc.hole_errors),
-        ),
-        pin_wheel=replace(
-            wheel, inclination=Inclination(), pin_profile=LengthProfile(), pin_errors=upright(wheel.pin_errors)
-        ),
-        pin_shaft=None
-        if shaft is None
-        else replace(shaft, inclination=Inclination(), pin_errors=upright(shaft.pin_errors)),
-        crank_bearing=replace(bearing, roller_length=None, roller_profile=LengthProfile()),
-    )

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem.contact.coupling import PairIntegrals
-from fem.contact.pressure_measures import peak_of, pressure_moments
-from fem.drive.fields import fit_rigid_motion
+from fem.contact.pressure_measures import peak_of, pressure_moments, vertex_means
+from fem.drive.full_solution import FullSolution
 from fem.drive.model import ContactPair
 from fem.drive.pose import PoseSolution
 from fem.solid_drive.solid_model import SolidModel
-from ltca.arrays import FloatArray
+from ltca.arrays import ComplexArray, FloatArray
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,8 +23,6 @@ class WidthResult:
     ----------
     heights : array, shape (n,)
         Vertices of the pressure, mm from mid-width.
-    pressure : array, shape (arc, n)
-        At all vertices, the ends of the arc included, MPa.
     line_load : array, shape (n,)
         ∫ p ds at the heights, N/mm.
     largest : array, shape (n,)
@@ -36,7 +34,6 @@ class WidthResult:
     """
 
     heights: FloatArray
-    pressure: FloatArray
     line_load: FloatArray
     largest: FloatArray
     load: float
@@ -49,7 +46,18 @@ class WidthResult:
         return float(self.line_load.max()) * length / self.load if self.load > 0.0 else float("nan")
 
 
-def width_results(model: SolidModel, state: PoseSolution) -> tuple[WidthResult, ...]:
+def solid_model(disc: FullSolution) -> SolidModel:
+    """Return the model of solid bodies of a solution."""
+    assert isinstance(disc.model, SolidModel), "results along the width are those of solid bodies"
+    return disc.model
+
+
+def width_results(disc: FullSolution) -> tuple[WidthResult, ...]:
+    """Return what every candidate pair of solid bodies has along its width."""
+    return along_width(solid_model(disc), disc.state)
+
+
+def along_width(model: SolidModel, state: PoseSolution) -> tuple[WidthResult, ...]:
     """Return what every candidate pair has along its width."""
     return tuple(
         _along_width(model, pair, integral, state.contact.pressure)
@@ -57,22 +65,33 @@ def width_results(model: SolidModel, state: PoseSolution) -> tuple[WidthResult, 
     )
 
 
-def _along_width(model: SolidModel, pair: ContactPair, integral: PairIntegrals, pressures: FloatArray) -> WidthResult:
+def pressures_over(disc: FullSolution, pair: ContactPair) -> tuple[FloatArray, FloatArray]:
+    """Return the heights of a pair, mm, 0 in the plane, and its pressures over arc and height, ends included, (arc, heights)."""
+    pressure = disc.state.contact.pressure
+    if isinstance(disc.model, SolidModel):
+        return _over_both_halves(disc.model, pair, pressure)
+    arc = pair.zone.arc
+    return np.zeros(1), vertex_means(arc, pair.zone.at_vertices(pressure[pair.unknowns]))[:, None]
+
+
+def _over_both_halves(model: SolidModel, pair: ContactPair, pressures: FloatArray) -> tuple[FloatArray, FloatArray]:
     grid, own = model.grids[pair.kind], model.pressures_of(pair, pressures)
     heights = grid.heights
     if grid.even:
         heights, own = np.concatenate([-heights[:0:-1], heights]), np.concatenate([own[:, :0:-1], own], axis=1)
-    arc = pair.zone.arc
-    full = np.vstack([np.zeros(own.shape[1]), own, np.zeros(own.shape[1])])
+    return heights, np.vstack([np.zeros(own.shape[1]), own, np.zeros(own.shape[1])])
+
+
+def _along_width(model: SolidModel, pair: ContactPair, integral: PairIntegrals, pressures: FloatArray) -> WidthResult:
+    heights, full = _over_both_halves(model, pair, pressures)
     fx, fy, _ = model.force_of(pair, integral, pressures)
     force = complex(fx, fy)
     load = abs(force)
     couple = model.couple_of(pair, integral, pressures)
     return WidthResult(
         heights=heights,
-        pressure=full,
-        line_load=integral.measure @ own,
-        largest=np.array([_largest(arc, column) for column in full.T]),
+        line_load=integral.measure @ full[1:-1],
+        largest=np.array([_largest(pair.zone.arc, column) for column in full.T]),
         load=load,
         moment=float((couple * np.conj(force)).real / load) if load > 0.0 else 0.0,
     )
@@ -83,52 +102,39 @@ def _largest(arc: FloatArray, pressure: FloatArray) -> float:
     return peak_of(arc, pressure, 2.0 * float(np.sqrt(square))) if total > 0.0 and square > 0.0 else 0.0
 
 
-def disc_lean(model: SolidModel, state: PoseSolution) -> complex:
+def bearing_couples(disc: FullSolution) -> ComplexArray:
+    """Return ∫ z dF of the rollers of each crank on the disc, N·mm: its moment about x and y is −imaginary and real part."""
+    model, pressure = solid_model(disc), disc.state.contact.pressure
+    found = np.zeros(model.placement.cranks, dtype=complex)
+    for pair, integral in zip(model.pairs, disc.state.integrals, strict=True):
+        if pair.kind == "roller_outer":
+            found[model.crank_of(pair.index)] -= model.couple_of(pair, integral, pressure)
+    return found
+
+
+def disc_lean(disc: FullSolution) -> complex:
     """Return the lean of the disc as its volume mean, dx/dz + i dy/dz in the fixed frame, rad; 0 where nothing tilts."""
+    model = solid_model(disc)
     if model.widths.even:
         return 0j
     first = 4 + len(model.rollers)
-    about_x, about_y = state.contact.motion[first : first + 2]
+    about_x, about_y = disc.state.contact.motion[first : first + 2]
     return complex(about_y, -about_x)
 
 
-def roller_leans(model: SolidModel, state: PoseSolution) -> FloatArray:
-    """Return the lean of every candidate roller along its ray, rad."""
-    if model.widths.even:
-        return np.zeros(len(model.rollers))
-    return np.asarray(state.contact.motion[6 + len(model.rollers) :])
+def roller_leans(disc: FullSolution) -> FloatArray:
+    """Return the lean of every roller in the plane of its ray and the axis, rad; 0 of those that are no candidates."""
+    model = solid_model(disc)
+    found = np.zeros(model.placement.roller_radii.size)
+    if not model.widths.even:
+        found[list(model.rollers)] = disc.state.contact.motion[6 + len(model.rollers) :]
+    return found
 
 
-def bore_lean(model: SolidModel, state: PoseSolution) -> complex:
-    """Return the lean of the disc fitted to the wall of its bore, dx/dz + i dy/dz in the fixed frame, rad."""
+def bore_lean(disc: FullSolution) -> complex:
+    """Return the lean of the disc fitted to the wall of its bores, dx/dz + i dy/dz in the fixed frame, rad."""
+    model, state = solid_model(disc), disc.state
     if model.widths.even:
         return 0j
-    turn = np.exp(1j * state.pose.disc_rotation)
-    return disc_lean(model, state) + complex(_on_bore(model, state.contact.pressure, tilting=True)[0] * turn)
-
-
-def bore_motion(model: SolidModel, state: PoseSolution) -> tuple[complex, float]:
-    """Return displacement (fixed axes, mm) and rotation (rad) of the disc fitted to the wall of its bore, mean of the width."""
-    shift, rotation = _on_bore(model, state.contact.pressure, tilting=False)
-    pose = state.pose
-    return pose.disc_displacement + shift * np.exp(1j * pose.disc_rotation), pose.disc_rotation + rotation
-
-
-def _on_bore(model: SolidModel, pressure: FloatArray, *, tilting: bool) -> tuple[complex, float]:
-    """Rigid motion of the section that fits what the wall of the bore moves by, as a mean along the width or by height.
-
-    By height is (12/t³) ∫ u z dz, what a linear load measures.
-    """
-    parity = "antisymmetric" if tilting else "symmetric"
-    own = next(each for each in model.disc.classes if each.body.layers.parity == parity)
-    layers, body = own.body.layers, model.meshes.disc
-    along = layers.moments(layers.unit_load)[layers.free_in_plane]
-    u = own.displacement(pressure[: model.on_disc])
-    chain = np.concatenate([body.boundary_nodes(bore.name) for bore in model.shapes.disc.bores])
-    nodes, places = np.unique(chain), body.places
-    moved = sum(factor * (u[own.body.unknowns_of(nodes, axis)] @ along) for axis, factor in ((0, 1.0), (1, 1j)))
-    weight = np.zeros(len(places))
-    length = np.abs(places[chain[:, 2]] - places[chain[:, 0]])
-    for column, share in ((0, 1.0), (1, 4.0), (2, 1.0)):
-        np.add.at(weight, chain[:, column], share * length / 6.0)
-    return fit_rigid_motion(places[nodes], np.asarray(moved), weight[nodes])
+    x, y, _ = model.disc.probed[-3:] @ state.contact.pressure[: model.on_disc]
+    return disc_lean(disc) + complex(x, y) * complex(np.exp(1j * state.pose.disc_rotation))

@@ -37,7 +37,7 @@ _IN_MESSAGES = {
     "FE mesh": "meshes of full finite elements",
     "clearance-free": "the clearance-free analysis",
     "solid pair": "a pair of solid bodies",
-    "solid disc": "a disc of solid bodies",
+    "solid disc": "discs of solid bodies",
 }
 """Names of engines in messages. The last four are no choice of an analysis: ``cyclo mesh``, a reference of the tests, and
 ``cyclo fem --bodies solid`` with and without ``--pair``."""
@@ -90,7 +90,8 @@ _RIGID = ("paper", "full FE", "FE mesh", "clearance-free", "solid pair", "solid 
 _FIXED = ("direct", *_RIGID)
 _WITHOUT_BEAMS = tuple(engine for engine in _FIXED if engine not in ("full FE", "FE mesh"))
 _WITHOUT_SUPPORTS = tuple(engine for engine in _RIGID if engine not in ("full FE", "FE mesh"))
-_ONE_BORE = ("paper", "clearance-free", "solid disc")
+_WITHOUT_SPRING = tuple(engine for engine in _WITHOUT_SUPPORTS if engine != "solid disc")
+_ONE_BORE = ("paper", "clearance-free")
 _HYBRID = "use --compliance hybrid"
 _TABLES = "use --method tables"
 REFUSALS = (
@@ -107,17 +108,13 @@ REFUSALS = (
         )
     ),
     Refusal("pin_wheel.pin_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),
-    Refusal(
-        "pin_wheel.axis_offset",
-        ("full FE", "FE mesh", "solid pair", "solid disc"),
-        "wheel and pin shaft have the same axis in the model",
-    ),
-    Refusal("pin_wheel.support_stiffness", _WITHOUT_SUPPORTS, "the axis of the wheel is fixed in the model"),
+    Refusal("pin_wheel.axis_offset", ("solid pair",), "wheel and pin shaft have the same axis in the model"),
+    Refusal("pin_wheel.support_stiffness", _WITHOUT_SPRING, "the axis of the wheel is fixed in the model"),
     Refusal("pin_wheel.seat", _FIXED, "pins are fixed in the model"),
     Refusal("pin_wheel.beam", _WITHOUT_BEAMS, "pins do not bend in the model"),
     Refusal("first_stage", _RIGID, "the model has no first stage", "give installation.first_stage_ratio"),
     Refusal(f"load.external.{ANY}", _RIGID, "the axis of the wheel is fixed in the model"),
-    Refusal("disc.number_of_discs", ("paper", "solid disc"), "the model has one disc"),
+    Refusal("disc.number_of_discs", ("paper",), "the model has one disc"),
     Refusal(f"disc.of.{ANY}.bore_errors", _ONE_BORE, "the model has one crank"),
     Refusal("crank_bearing.roller_length", _PLANE, _TWO_DIMENSIONS, _HYBRID, equals="disc.thickness"),
     Refusal("crank_bearing.roller_profile", _PLANE, _TWO_DIMENSIONS, _HYBRID, accepts=attrgetter("is_cylinder")),

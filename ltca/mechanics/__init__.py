@@ -2,6 +2,7 @@
 
 ===============  ================================================================================================
 displaced_pins   Contacts on pins that beams and the ring displace: how they follow, and what they press
+laws             Laws of all contacts, in the plane or in slices
 places           Places of the contacts of a disc at poses, and the inner unknowns
 pressing         What contacts press the coordinates of discs with, rollers where they stand
 elimination      Deformations, displacements of pins and places of rollers eliminated

@@ -33,7 +33,6 @@ from ltca.compliance.response import ContactLaws, Inner, Start
 from ltca.errors import ConvergenceError
 from ltca.geometry.coordinates import DISC_ROTATION, X, Y
 from ltca.geometry.pair_motion import KnownPins
-from ltca.laws.all_contacts import PlaneLaws, SlicedLaws
 from ltca.mechanics.displaced_pins import PinMembers
 from ltca.mechanics.elimination import (
     ROUGHLY_SETTLED,
@@ -42,6 +41,7 @@ from ltca.mechanics.elimination import (
     eliminate_rollers,
     loads_of,
 )
+from ltca.mechanics.laws import PlaneLaws, SlicedLaws
 from ltca.mechanics.places import DiscPlaces, Indices, State, beside, mixed, padded, places_of, reach_of, with_crank
 from ltca.mechanics.pressing import BySlope, Pressing, pressing_of
 

@@ -129,7 +129,7 @@ def test_a_run_cut_short_leaves_no_index_over_two_solutions(folder, tmp_path, mo
     monkeypatch.setattr(solution_files, "write_field", fail)
     field = type("Field", (), {"body": type("Body", (), {"name": "disc"})})
     with pytest.raises(OSError, match="No space left"):
-        solution_files.write_solution(type("Solution", (), {"discs": (None,)}), [[field]], "CS-3", out)
+        solution_files.write_solution(type("Solution", (), {"discs": (None,), "solid": False}), [[field]], "CS-3", out)
     assert not (out / "fem.vtm").exists()
 
 

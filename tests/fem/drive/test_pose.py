@@ -46,7 +46,7 @@ def stepping(monkeypatch):
         monkeypatch.setattr(pose, "solve_floating_contact", lambda problem, active: CONTACT)
         monkeypatch.setattr(pose, "pair_forces", forces)
         monkeypatch.setattr(pose, "moments_on_cranks", lambda *given: np.zeros(1))
-        monkeypatch.setattr(pose, "_move", lambda models, supports, at, contacts, forces: (at, now["increment"]))
+        monkeypatch.setattr(pose, "_move", lambda models, supports, at, integrals, contacts: (at, now["increment"]))
         load, supports = pose.WheelLoad(moment=-1.0), Supports(wheel=None, shaft=np.eye(4))
         (found,) = pose.solve_poses((model,), supports, load, (plain_pose(),), start_active=CONTACT.active, **options)
         return found
@@ -76,15 +76,22 @@ def move(motion, start=None, force=(0.0, 0.0, 0.0), ring=0.0):
     """Move from a pose with the multipliers of one step: disc x, y, rotation, wheel, two rollers."""
     model = SimpleNamespace(
         shapes=SimpleNamespace(disc=SimpleNamespace(flank=SimpleNamespace(profile=SimpleNamespace(tip_radius=50.0)))),
-        placement=SimpleNamespace(wheel_pin_centres=np.array([80.0, -80.0j])),
+        placement=SimpleNamespace(
+            wheel_pin_centres=np.array([80.0, -80.0j]), wheel_pin_radii=np.ones(2), hole_radii=np.ones(1), cranks=1
+        ),
         rollers=(1, 0),
-        pairs=(SimpleNamespace(kind="hole", index=0), SimpleNamespace(kind="pin", index=0)),
+        pairs=tuple(
+            SimpleNamespace(kind=kind, index=0, unknowns=slice(place, place + 1))
+            for place, kind in enumerate(("hole", "pin"))
+        ),
+        unknown_count=2,
+        resultants_of=lambda pair, force: np.array(force)[:, None],
         wheel_direction=lambda at: 1j,
     )
-    found = SimpleNamespace(motion=np.asarray(motion))
+    found = SimpleNamespace(motion=np.asarray(motion), pressure=np.ones(2))
     supports = Supports(wheel=ring * np.eye(4), shaft=1e-6 * np.diag([1.0, 1.0, 0.0, 0.0]))
-    poses, forces = [plain_pose() if start is None else start], [np.array([force, (9.0, 9.0, 9.0)])]
-    (at,), increment = pose._move([model], supports, poses, [found], forces)
+    poses = [plain_pose() if start is None else start]
+    (at,), increment = pose._move([model], supports, poses, [[force, (9.0, 9.0, 9.0)]], [found])
     return at, increment
 
 

@@ -297,7 +297,7 @@ def test_what_varies_along_the_length_is_refused_before_any_work(field, given, r
     def never(*words, **options):
         raise AssertionError("work was begun")
 
-    monkeypatch.setattr("fem.drive.solution.expect_contacts", never)
+    monkeypatch.setattr("fem.drive.solution.guess_contacts", never)
     said = (" for full finite elements ", "; use --compliance hybrid")
     with refused_field(refused, value, *said, bound=bound):
         solve_drive(with_fields(drive(), {field: given}), 0.5)

@@ -78,13 +78,14 @@ def test_a_coarse_mesh_too_flat_for_fast_growth_is_made_with_slow_growth():
     """Fast growth saves time; where gmsh makes bad triangles of it, the drive is solved all the same."""
     tried = []
 
-    def mesh(disc, contacts, options, rounds):
+    def mesh(contacts, options, rounds):
         tried.append((options.size, options.growth))
         if options.growth == stages.COARSE_GROWTH:
             raise MeshError("too distorted")
 
-    task = SimpleNamespace(options=SolutionOptions(), mesh=mesh, condense=lambda *words: "model")
-    assert stages._Task.condense_coarse(task, None, None, ()) == "model"
+    disc = SimpleNamespace(mesh=mesh, condense=lambda *words: "model")
+    task = SimpleNamespace(options=SolutionOptions(), say=None)
+    assert stages.Task.condense_coarse(task, disc, None, ()) == "model"
     assert tried == [(4.0, stages.COARSE_GROWTH), (4.0, 0.3)]
 
 

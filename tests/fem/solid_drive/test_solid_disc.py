@@ -1,4 +1,4 @@
-"""A whole disc of solid bodies: plane bodies at ν = 0, balance in space, mirror in z, energies, what it refuses."""
+"""Discs of solid bodies: plane bodies at ν = 0, balance in space, mirror in z, energies, what they refuse."""
 
 from __future__ import annotations
 
@@ -10,24 +10,30 @@ import pytest
 from refusals import refused_field
 
 from fem.drive.condensed import condense_drive
-from fem.drive.expected_contacts import expect_contacts
+from fem.drive.expected_contacts import guess_contacts
+from fem.drive.full_solution import FullSolution
 from fem.drive.meshes import mesh_drive
 from fem.drive.pose import WheelLoad, joint_problem, pair_forces, solve_pose, solve_poses
 from fem.drive.supports import Supports
 from fem.errors import MemoryLimitError, MeshError
+from fem.options import SolutionOptions
+from fem.reducer.solution import solve_reducer
 from fem.shapes import DriveShapes
 from fem.solid_contact.reliefs import relief_of
-from fem.solid_drive.along_width import DriveWidths, plane_part
+from fem.solid_drive.along_width import DriveWidths
 from fem.solid_drive.solid_bodies import condense_solids
-from fem.solid_drive.solved_disc import SolidOptions, solve_solid_disc
-from fem.solid_drive.width_results import bore_lean, disc_lean, roller_leans, width_results
+from fem.solid_drive.width_results import along_width, bore_lean, disc_lean, pressures_over, roller_leans
 from ltca.drive.parts import Material
+from ltca.drive.single_discs import single_discs
 from ltca.geometry.placement import Placement
 from ltca.reading.changes import with_fields
 from ltca.reading.drive_file import load_drive
 
 ANGLE, LEAN = 0.3, {"contact.slices": 5, "pin_shaft.inclination.x": 3e-3, "pin_wheel.inclination.y": -1e-3}
-OPTIONS = SolidOptions(size=6.0, layers=2)
+TWO = {"disc.number_of_discs": 2, "disc.gap": 2.0}
+OFFSET = {"pin_wheel.support_stiffness": 2e4, "pin_wheel.axis_offset.x": 0.02, "pin_wheel.axis_offset.y": -0.01}
+OPTIONS = SolutionOptions(size=6.0, layers=2)
+SECTIONS = SolutionOptions(size=6.0, growth=0.6)
 
 
 def plastic():
@@ -36,11 +42,10 @@ def plastic():
 
 def condense(drive, layers=2):
     """Meshes for the guess of rigid bodies on springs: coarse, but the same for whatever is compared."""
-    plane = plane_part(drive)
-    shapes, contacts = DriveShapes.of_drive(plane), expect_contacts(plane, ANGLE)
-    meshes = mesh_drive(shapes, contacts, OPTIONS.section)
+    shapes, contacts = DriveShapes.of_drive(drive), guess_contacts(drive, ANGLE)
+    meshes = mesh_drive(shapes, contacts, SECTIONS)
     model = condense_solids(drive, shapes, contacts, meshes, DriveWidths(drive=drive, layers=layers))
-    return SimpleNamespace(drive=drive, plane=plane, shapes=shapes, contacts=contacts, meshes=meshes, model=model)
+    return SimpleNamespace(drive=drive, shapes=shapes, contacts=contacts, meshes=meshes, model=model)
 
 
 def standing(model, drive):
@@ -52,37 +57,118 @@ def solve(model, drive, factor=1.0):
     return solve_pose(model, factor * drive.wheel_moment(), pose_tolerance=1e-9)
 
 
+def solution(model, state):
+    return FullSolution(model=model, state=state, contacts=None, options=OPTIONS, rounds=(), seconds={})
+
+
 @pytest.fixture(scope="module")
 def leaning():
     made = condense(with_fields(plastic(), LEAN))
     return SimpleNamespace(**vars(made), state=solve(made.model, made.drive))
 
 
-@pytest.mark.slow
-def test_without_poisson_ratio_solids_are_plane():
-    # Nothing varies along the width then: the displacements of plane bodies are those of solid ones, in the elements as well.
+def without_poisson(drive):
+    """The drive of a plastic whose displacements along the width are none."""
     soft = Material(youngs_modulus=3100.0, poisson_ratio=0.0)
-    drive = plastic()
-    drive = replace(drive, materials=replace(drive.materials, disc=soft, wheel_pin=soft, roller=soft, inner_race=soft))
+    return replace(drive, materials=replace(drive.materials, disc=soft, wheel_pin=soft, roller=soft, inner_race=soft))
+
+
+def joint(models, drive):
+    """All discs on one wheel."""
+    return solve_poses(models, Supports.of_drive(drive), WheelLoad.of_drive(drive), pose_tolerance=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "changes",
+    [{}, pytest.param({"installation.held": "pin-wheel", **TWO, **OFFSET}, marks=pytest.mark.nightly)],
+    ids=["one disc", "two discs on a yielding wheel"],
+)
+def test_without_poisson_ratio_solids_are_plane(changes):
+    # Nothing varies along the width then: the displacements of plane bodies are those of solid ones, in the elements as well.
+    drive = without_poisson(with_fields(plastic(), changes))
+    made = [condense(single) for single in single_discs(drive)]
+    planes = [condense_drive(each.drive, each.shapes, each.contacts, each.meshes) for each in made]
+    flat, solid = joint(planes, drive), joint([each.model for each in made], drive)
+    for own, plane, on_plane, on_solid in zip(made, planes, flat, solid, strict=True):
+        # What the condensations lose to round-off: the condition of the compliance, 1e6.
+        assert on_solid.pose.wheel_angle == pytest.approx(on_plane.pose.wheel_angle, rel=1e-8)
+        assert on_solid.wheel_moment == pytest.approx(on_plane.wheel_moment, rel=1e-7)
+        largest = on_plane.contact.pressure.max()
+        for solid_pair, plane_pair in zip(own.model.pairs, plane.pairs, strict=True):
+            of_solid = own.model.pressures_of(solid_pair, on_solid.contact.pressure)
+            expected = np.repeat(on_plane.contact.pressure[plane_pair.unknowns][:, None], of_solid.shape[1], axis=1)
+            np.testing.assert_allclose(of_solid, expected, atol=1e-6 * largest)
+        assert stored(own.model, on_solid) == pytest.approx(stored(plane, on_plane), rel=1e-7)
+        np.testing.assert_allclose(
+            own.model.bore_fit(on_solid.contact.pressure),
+            plane.bore_fit(on_plane.contact.pressure),
+            rtol=1e-6,
+            atol=1e-10,
+        )
+        points = own.model.probed_places
+        np.testing.assert_allclose(
+            own.model.wall_displacements(points, on_solid.contact.pressure),
+            plane.wall_displacements(points, on_plane.contact.pressure),
+            rtol=1e-6,
+            atol=1e-9,
+        )
+    if len(made) > 1:
+        assert abs(solid[0].wheel_moment / solid[1].wheel_moment - 1.0) > 0.1
+
+
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_rollers_of_several_cranks_do_not_press_each_other_through_their_races():
+    """One condensed race stands for all: plane bodies as above. Three cranks, few teeth and rollers."""
+    drive = load_drive("rv").cases["nominal"]
+    few = {
+        "crank.eccentricity": 4.0, "crank.angle": 0.4, "crank_bearing.number_of_rollers": 5, "pin_wheel.number_of_pins": 6,
+        "pin_wheel.pin_radius": 8.0, "disc.number_of_teeth": 5, "disc.number_of_discs": 1, "disc.phases": (), "disc.planes": (),
+        "load.torque": 200e3, "load.light_torque": 6e3,
+    }  # fmt: skip
+    drive = without_poisson(with_fields(replace(drive, crank=replace(drive.crank, support=None)), few))
     made = condense(drive)
     plane = condense_drive(drive, made.shapes, made.contacts, made.meshes)
-    flat, solid = solve(plane, drive), solve(made.model, drive)
-    # What the condensations lose to round-off: the condition of the compliance, 1e6.
+    (flat,), (solid,) = joint([plane], drive), joint([made.model], drive)
     assert solid.pose.wheel_angle == pytest.approx(flat.pose.wheel_angle, rel=1e-8)
-    largest = flat.contact.pressure.max()
-    for solid_pair, plane_pair in zip(made.model.pairs, plane.pairs, strict=True):
-        of_solid = made.model.pressures_of(solid_pair, solid.contact.pressure)
-        expected = np.repeat(flat.contact.pressure[plane_pair.unknowns][:, None], of_solid.shape[1], axis=1)
-        np.testing.assert_allclose(of_solid, expected, atol=1e-6 * largest)
-    stored = made.model.strain_energy(solid.pose, solid.integrals, solid.contact.pressure)
-    assert stored == pytest.approx(
-        0.5 * flat.contact.pressure @ _compliance(plane, flat) @ flat.contact.pressure, rel=1e-7
-    )
+    for pair in made.model.pairs:
+        if pair.kind == "roller_inner":
+            (same,) = (each for each in plane.pairs if (each.kind, each.index) == (pair.kind, pair.index))
+            middle = made.model.profile_of(pair, solid.contact.pressure)
+            expected = flat.contact.pressure[same.unknowns]
+            np.testing.assert_allclose(middle, expected, atol=1e-6 * flat.contact.pressure.max())
 
 
-def _compliance(model, state):
-    supports = Supports.of_drive(model.drive)
-    return joint_problem([model], supports, [state.pose], [list(state.integrals)], state.wheel_moment).compliance
+@pytest.mark.nightly
+@pytest.mark.slow
+def test_two_discs_all_leaning_alike_are_the_drive_turned_as_a_whole():
+    """Axes pass through the middle of the drive, so that pins stand elsewhere at each disc: the same answer, leans as given."""
+    upright = with_fields(plastic(), TWO)
+    members = ("pin_wheel", "pin_shaft", "crank")
+    leans = {f"{member}.inclination.{axis}": value for member in members for axis, value in (("x", 2e-3), ("y", 1e-3))}
+    turned = with_fields(upright, leans)
+    models = [condense(single).model for single in single_discs(turned)]
+    assert abs(models[0].placement.wheel_axis) == pytest.approx(5.0 * np.hypot(2e-3, 1e-3), rel=1e-12)
+    straight = [
+        replace(standing(model, single), widths=model.widths)
+        for model, single in zip(models, single_discs(upright), strict=True)
+    ]
+    found, expected = joint(models, turned), joint(straight, upright)
+    for model, state, other in zip(models, found, expected, strict=True):
+        assert state.pose.wheel_angle == pytest.approx(other.pose.wheel_angle, rel=1e-8)
+        assert state.wheel_moment == pytest.approx(other.wheel_moment, rel=1e-7)
+        np.testing.assert_allclose(
+            state.contact.pressure, other.contact.pressure, atol=1e-6 * other.contact.pressure.max()
+        )
+        assert disc_lean(solution(model, state)) == pytest.approx(turned.crank.inclination.lean, rel=1e-8)
+
+
+def stored(model, state):
+    """Strain energy by the compliance, N·mm."""
+    supports, pressure = Supports.of_drive(model.drive), state.contact.pressure
+    problem = joint_problem([model], supports, [state.pose], [list(state.integrals)], state.wheel_moment)
+    return 0.5 * pressure @ problem.compliance @ pressure
 
 
 @pytest.mark.nightly
@@ -140,11 +226,11 @@ class TestLeaning:
         assert abs(sum(couples)) < 1e-4 * largest * 4.0
         assert abs(moment) < 1e-4 * largest * 20.0
         assert max(map(abs, couples)) > 0.05 * largest
-        assert abs(disc_lean(model, state)) > 1e-4
+        assert abs(disc_lean(solution(model, state))) > 1e-4
 
     def test_rollers_balance_in_force_and_moment(self, leaning):
         model = leaning.model
-        along = dict(zip(((p.kind, p.index) for p in model.pairs), width_results(model, leaning.state), strict=True))
+        along = dict(zip(((p.kind, p.index) for p in model.pairs), along_width(model, leaning.state), strict=True))
         largest = max(each.load for each in along.values())
         for index in model.rollers:
             bore, race = along["roller_outer", index], along["roller_inner", index]
@@ -157,22 +243,28 @@ class TestLeaning:
         model = standing(leaning.model, mirrored)
         state = solve(model, mirrored)
         assert state.pose.wheel_angle == pytest.approx(leaning.state.pose.wheel_angle, rel=1e-9)
-        assert disc_lean(model, state) == pytest.approx(-disc_lean(leaning.model, leaning.state), rel=1e-7)
-        np.testing.assert_allclose(
-            roller_leans(model, state), -roller_leans(leaning.model, leaning.state), rtol=1e-6, atol=1e-10
+        assert disc_lean(solution(model, state)) == pytest.approx(
+            -disc_lean(solution(leaning.model, leaning.state)), rel=1e-7
         )
-        for there, here in zip(width_results(model, state), width_results(leaning.model, leaning.state), strict=True):
-            np.testing.assert_allclose(
-                there.pressure, here.pressure[:, ::-1], atol=1e-6 * max(here.pressure.max(), 1.0)
+        np.testing.assert_allclose(
+            roller_leans(solution(model, state)),
+            -roller_leans(solution(leaning.model, leaning.state)),
+            rtol=1e-6,
+            atol=1e-10,
+        )
+        for pair in model.pairs:
+            (_, there), (_, here) = (
+                pressures_over(solution(*own), pair) for own in ((model, state), (leaning.model, leaning.state))
             )
+            np.testing.assert_allclose(there, here[:, ::-1], atol=1e-6 * max(here.max(), 1.0))
 
     def test_aligned_parts_tilt_nothing(self, leaning):
         model = standing(leaning.model, plastic())
         # Both classes are there; nothing but round-off asks for the antisymmetric one.
         model = replace(model, widths=leaning.model.widths)
         state = solve(model, plastic())
-        assert abs(disc_lean(model, state)) < 1e-10
-        for each in width_results(model, state):
+        assert abs(disc_lean(solution(model, state))) < 1e-10
+        for each in along_width(model, state):
             np.testing.assert_allclose(each.line_load, each.line_load[::-1], atol=1e-7 * max(each.line_load.max(), 1.0))
 
     def test_all_leaning_alike_is_the_drive_turned_as_a_whole(self, leaning):
@@ -186,26 +278,22 @@ class TestLeaning:
         state = solve(model, turned)
         lean = turned.crank.inclination.lean
         assert lean == 1e-3 - 2e-3j
-        assert disc_lean(model, state) == pytest.approx(lean, rel=1e-8)
-        assert bore_lean(model, state) == pytest.approx(lean, rel=1e-7)
+        assert disc_lean(solution(model, state)) == pytest.approx(lean, rel=1e-8)
+        assert bore_lean(solution(model, state)) == pytest.approx(lean, rel=1e-7)
         rays = model.roller_rays[list(model.rollers)]
-        carrying = {pair.index for pair, each in zip(model.pairs, width_results(model, state), strict=True)
+        carrying = {pair.index for pair, each in zip(model.pairs, along_width(model, state), strict=True)
                     if pair.kind == "roller_outer" and each.load > 0.0}  # fmt: skip
         on = [number in carrying for number in model.rollers]
-        np.testing.assert_allclose(
-            roller_leans(model, state)[on], (np.conj(rays) * lean).real[on], rtol=1e-6, atol=1e-10
-        )
-        for each in width_results(model, state):
+        leans = roller_leans(solution(model, state))[list(model.rollers)]
+        np.testing.assert_allclose(leans[on], (np.conj(rays) * lean).real[on], rtol=1e-6, atol=1e-10)
+        for each in along_width(model, state):
             np.testing.assert_allclose(each.line_load, each.line_load[::-1], atol=1e-7 * max(each.line_load.max(), 1.0))
 
-    def test_energies_agree_and_torque_does_what_is_stored(self, leaning):
-        model, state = leaning.model, leaning.state
-        on_disc = state.contact.pressure[: model.on_disc]
-        # By the displacements and the stiffness, and by the compliance: 1e-4 of what a factor of condition 1e8 loses.
-        assert model.disc.energy(on_disc) == pytest.approx(0.5 * on_disc @ model.disc_compliance @ on_disc, rel=1e-8)
+    def test_torque_does_what_is_stored(self, leaning):
+        model = leaning.model
         # dE = M dφ of all that is held or free: central about the torque, third order of 2 %.
         less, more = solve(model, leaning.drive, 0.98), solve(model, leaning.drive, 1.02)
-        rise = [model.strain_energy(each.pose, each.integrals, each.contact.pressure) for each in (less, more)]
+        rise = [stored(model, each) for each in (less, more)]
         turn = more.pose.wheel_angle - less.pose.wheel_angle
         # Gaps are linearised about a pose within the plane and linear in tilts: some 1e-4 of normals that turn.
         assert rise[1] - rise[0] == pytest.approx(leaning.drive.wheel_moment() * turn, rel=2e-3)
@@ -223,7 +311,7 @@ def test_lengths_reliefs_and_classes():
     )
     widths = DriveWidths(drive=drive, layers=3)
     assert not widths.even
-    assert DriveWidths(drive=plane_part(drive), layers=3).even
+    assert DriveWidths(drive=plastic(), layers=3).even
     assert [each.parity for each in widths.layers_of("disc")] == ["symmetric", "antisymmetric"]
     # The disc has an end of a layer where the rollers end.
     assert np.any(widths.layers_of("disc")[0].vertices == 3.0)
@@ -242,20 +330,19 @@ def test_lengths_reliefs_and_classes():
 @pytest.mark.parametrize(
     ("field", "value", "refused", "said"),
     [
-        ("disc.number_of_discs", 2, "disc.number_of_discs", "must be 1 for a disc of solid bodies"),
-        ("pin_wheel.support_stiffness", 1e5, "pin_wheel.support_stiffness", "the axis of the wheel is fixed"),
+        ("main_bearing.radial_stiffness", 1e5, "main_bearing", "the axis of the wheel is fixed"),
+        ("pin_shaft.beam", {"tip": "free"}, "pin_shaft.beam", "pins do not bend in the model"),
         ("friction.pin", 0.1, "friction", "frictionless"),
-        ("pin_wheel.axis_offset.x", 0.01, "pin_wheel.axis_offset", "same axis"),
     ],
 )
 def test_what_it_does_not_know_is_refused_by_name(field, value, refused, said):
     with refused_field(refused, "", said):
-        solve_solid_disc(with_fields(plastic(), {field: value}), ANGLE)
+        solve_reducer(with_fields(plastic(), {field: value}), ANGLE, OPTIONS)
 
 
 def test_memory_is_known_before():
     with pytest.raises(MemoryLimitError, match="the disc as a solid body"):
-        solve_solid_disc(plastic(), ANGLE, SolidOptions(size=0.01, layers=40))
+        solve_reducer(plastic(), ANGLE, SolutionOptions(size=0.01, layers=40))
 
 
 def test_one_layer_is_too_few():

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
+from ltca.compliance import sliced
 from ltca.laws.line_contact import LineContactLaw
-from ltca.laws.sliced_contact import EXACT, ROUGH, SlicedContact
+
+if TYPE_CHECKING:
+    from ltca.laws.sliced_contact import SlicedContact
 
 
 class Carried(NamedTuple):
@@ -81,7 +84,7 @@ class SlicedLaws:
             for kind, law, radius in zip(kinds, laws.placed(at.flank), radii, strict=True):
                 pressed, tilt = deformation[:, 0, kind], deformation[:, 1, kind] / half
                 curved = np.broadcast_to(radius, pressed.shape)
-                one = law.respond(pressed, tilt, curved, next(starts, None), ROUGH if roughly else EXACT)
+                one = law.respond(pressed, tilt, curved, next(starts, None), sliced.ROUGH if roughly else sliced.EXACT)
                 load[:, 0, kind], load[:, 1, kind] = one.load, one.moment / half
                 own = one.by_approach, one.by_tilt / half, one.moment_by_tilt / half**2
                 for values, mine in zip(stiffness, own, strict=True):
