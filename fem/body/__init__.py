@@ -9,6 +9,7 @@ sparse_factor     Factors of sparse matrices, and what is said where memory is n
 condensation      Condensation of a body to its loads: one sparse factorisation gives the compliance of all of them
 free_body         Datum of a floating body: its displacement relative to the best-fit rigid motion of some boundaries
 influence         Influence between very many loads of a free body: only the blocks that are asked for, none by a dense factor
+joined_parts      A body of parts of which there are copies: each is condensed once to the nodes that it shares
 stress            Stress recovery: from nodal displacements to nodal Cauchy stresses
 wall_stress       Stress along a meshed boundary, from recovered nodal stresses
 plane_references  Closed forms that stresses along walls are held against, and a free body under loads

@@ -18,7 +18,7 @@ def test_wrong_words_are_refused_before_any_work(row, tmp_path, monkeypatch, cap
     def never(*_words, **_options):
         raise AssertionError("work was begun")
 
-    monkeypatch.setattr("fem.coefficients.bodies.mesh_disc", never)
+    monkeypatch.setattr("fem.coefficients.bodies.mesh_disc_parts", never)
     command, *words = shlex.split(row["words"])
     assert main([command, "--out", str(tmp_path / "out"), *words]) == 2
     _, _, said = capsys.readouterr().err.partition("cyclo: error: ")
