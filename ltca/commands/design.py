@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--quick",
         action="store_true",
-        help="designs on half-spaces as candidates are, not on hybrid, whose coefficients take some 20 s (20 pins) to 40 s (100 "
+        help="designs on half-spaces as candidates are, not on hybrid, whose coefficients take some 5 s (20 pins) to 15 s (100 "
         "pins) on a free core for each drive that is tried",
     )
     add_worker_arguments(parser)
