@@ -93,3 +93,9 @@ def test_rings_that_hold_no_pins_are_refused(changes, words):
     with pytest.raises(DriveError) as caught:
         build_drive(tomllib.loads(shipped_drive("robot-joint")) | {"ring": ring})
     assert any(words in problem for problem in caught.value.problems), caught.value.problems
+
+
+@pytest.mark.parametrize("inner", [57.6, 59.0, 62.4])
+def test_rings_whose_seats_hold_the_pins_are_taken(inner):
+    ring = {"inner_radius": inner, "outer_radius": 80.0, "width": 30.0}
+    assert build_drive(tomllib.loads(shipped_drive("robot-joint")) | {"ring": ring}).ring.inner_radius == inner

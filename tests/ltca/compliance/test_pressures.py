@@ -12,8 +12,11 @@ from ltca.analysis.loaded_analysis import analyse
 from ltca.arrays import stack_drives
 from ltca.compliance.coupled import CoupledCompliance
 from ltca.compliance.half_space import HalfSpaceCompliance
+from ltca.compliance.pressures import along_width
+from ltca.contact.contact_kind import ContactKind
 from ltca.equilibrium.balance import solve_equilibrium
 from ltca.equilibrium.reducer import Reducer
+from ltca.laws.width_pressure import WidthPressures
 from ltca.reading.changes import with_fields
 from ltca.testing.closed_form_bodies import without_coupling
 
@@ -232,3 +235,23 @@ def test_holes_in_batches(drive):
     for field in ("mid", "largest", "half_width"):
         expected = np.concatenate([getattr(holes, field) for holes in alone])
         np.testing.assert_allclose(getattr(found, field), expected, atol=1e-5 * expected.max())
+
+
+def test_half_widths_along_the_width_are_those_of_hertz():
+    """b = √(4 q ρ/(π E*)) of each slice with its own line load q, and p = 2 q/(π b)."""
+    modulus, radius, line_load = 1.1e5, np.array([3.0, 8.0]), np.array([[40.0, 90.0, 250.0], [10.0, 60.0, 20.0]])
+    half_width = np.sqrt(4.0 * line_load * radius[:, None] / (np.pi * modulus))
+    pressure = 2.0 * line_load / (np.pi * half_width)
+    along = WidthPressures(
+        height=np.array([-3.0, 0.0, 3.0]),
+        line_load=line_load,
+        even_line_load=line_load,
+        pressure=pressure,
+        largest=pressure.max(axis=1),
+        place=np.zeros(2),
+        end_load=np.zeros((2, 2)),
+    )
+    found = along_width(ContactKind(length=9.0, contact_modulus=modulus), along, radius)
+    assert found.along.half_width == pytest.approx(half_width, rel=1e-12)
+    assert found.half_width == pytest.approx(half_width[:, 1], rel=1e-12)
+    assert found.mid == pytest.approx(pressure[:, 1], rel=1e-12)

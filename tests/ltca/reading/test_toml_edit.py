@@ -138,3 +138,10 @@ def test_tolerances_stand_in_one_table_with_their_dots(text, expected):
 def test_a_key_with_dots_is_one_key():
     changed = with_values('[bearings."K 1.5"]\nbore = 1\n', {("bearings", "K 1.5", "bore"): "2"})
     assert changed == '[bearings."K 1.5"]\nbore = 2\n'
+
+
+def test_what_stands_behind_a_new_table_stays():
+    text = "[load]\ntorque = 1.0\n\n[limits]\nmax_pin_pressure_mid = 1500.0  # of the maker\n"
+    changed = with_values(text, {"friction.pin": "0.1"})
+    assert tomllib.loads(changed) == tomllib.loads(text) | {"friction": {"pin": 0.1}}
+    assert changed.endswith("max_pin_pressure_mid = 1500.0  # of the maker\n")
