@@ -20,9 +20,7 @@ class Carried(NamedTuple):
     """What contacts carry; components are the load and, in slices, the moment by half the thickness of the discs."""
 
     load: FloatArray  # N, shape (positions, components, contacts)
-    stiffness: (
-        FloatArray  # k, and in slices that of load by tilt and of moment by tilt, N/mm, (1 or 3, positions, contacts)
-    )
+    stiffness: FloatArray  # k, in slices also of load and of moment by tilt, N/mm, (1 or 3, positions, contacts)
     left: FloatArray  # force that may be left over within a contact, N, shape (positions,)
     slices: list[list[SlicedContact]]  # by disc and kind; none in the plane
 
@@ -46,9 +44,8 @@ class PlaneLaws:
         for at, kinds in zip(places, self.kinds, strict=True):
             radius[:, kinds[0]] = at.flank.effective_radius
         for law, contacts in self.groups:
-            load[:, 0, contacts], stiffness[0][:, contacts] = law.load_and_stiffness(
-                e[:, contacts], radius[:, contacts]
-            )
+            found = law.load_and_stiffness(e[:, contacts], radius[:, contacts])
+            load[:, 0, contacts], stiffness[0][:, contacts] = found
         # Laws that know where on the flank a pin touches are asked for closed contacts alone.
         for at, laws, kinds in zip(places, self.laws, self.kinds, strict=True) if not self.groups else ():
             for law, kind in zip(laws.placed(at.flank), kinds, strict=True):
@@ -65,8 +62,6 @@ class PlaneLaws:
 
 class SlicedLaws:
     """The same in slices: what each slice carries is balanced inside its contact."""
-
-    groups: tuple[()] = ()
 
     def __init__(self, laws: Sequence[Any], kinds: Sequence[Sequence[slice]], *, alike: bool) -> None:
         self.laws, self.kinds = laws, kinds
