@@ -116,10 +116,10 @@ def execute(arguments: argparse.Namespace) -> int:
         arguments.size = arguments.size or 1.0
         return execute_pair(arguments)
     _require_options(arguments)
-    options = _options(arguments)
-    bodies = "solid bodies" if options.layers else f"plane {options.plane}"
     referee = _referee(arguments.referee)
     file, case, drive = chosen_case(arguments)
+    options = _options(arguments)
+    bodies = "solid bodies" if options.layers else f"plane {options.plane}"
     name = file.name
     out = arguments.out or default_folder(name, "fem")
     if arguments.export or referee:

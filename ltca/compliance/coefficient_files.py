@@ -154,10 +154,11 @@ def expected_seconds(drives: Iterable[Drive]) -> list[float]:
 def told_seconds(seconds: float) -> str:
     """Return a time that is known to a factor of two, for a message.
 
-    >>> told_seconds(21.7), told_seconds(98.0), told_seconds(290.0)
-    ('some 20 s', 'some 100 s', 'some 5 min')
+    >>> told_seconds(4.6), told_seconds(21.7), told_seconds(98.0), told_seconds(290.0)
+    ('some 5 s', 'some 20 s', 'some 100 s', 'some 5 min')
     """
-    return f"some {10 * max(round(0.1 * seconds), 1)} s" if seconds < 180.0 else f"some {round(seconds / 60.0)} min"
+    step = 5 if seconds < 15.0 else 10
+    return f"some {step * max(round(seconds / step), 1)} s" if seconds < 180.0 else f"some {round(seconds / 60.0)} min"
 
 
 def derivation_words(drives: Iterable[Drive], bodies: Bodies, at_once: int = 1) -> str:

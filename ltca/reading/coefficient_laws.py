@@ -240,7 +240,7 @@ def _stated_quality(dataset: Labelled) -> Iterator[Check]:
         for name in (INTERPOLATION, TILT_INTERPOLATION):
             yield from _stated(dataset, name, INTERPOLATION_LIMIT, reason)
     reason = (
-        "of the largest entry without rigid motions; told two to ten times as large as it is (measured), or the change from a "
+        "of the largest entry without rigid motions; told two to forty times as large as it is (measured), or the change from a "
         "mesh of twice the size, a fifth of which is left"
     )
     yield from _stated(dataset, CONVERGENCE, CONVERGENCE_LIMIT, reason)

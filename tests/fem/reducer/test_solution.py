@@ -181,7 +181,7 @@ def test_the_command_writes_files_by_disc(solved, uneven, tmp_path, monkeypatch,
     assert sum(summary["torque_share"]) == pytest.approx(1.0)
     out = capsys.readouterr().out
     assert "disc 1, " in out
-    assert "% of it" in out
+    assert out.count("its part of the moment on the wheel: ") == 2
 
 
 def test_full_solutions_are_judged_by_the_limits_of_the_drive(solved):

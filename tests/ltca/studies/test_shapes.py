@@ -90,7 +90,7 @@ def test_a_sweep_derives_each_shape_once_and_beforehand(derived, tmp_path):
     assert [drive.disc.thickness for drive in alone] == [11.8, 12.0]
     (lent, _), *told = told
     assert "at most 0.2 % in every number take its influence coefficients" in lent.replace("%", " %").replace("  ", " ")
-    assert told == [("2 shapes have no influence coefficients yet: derived first, some 10 s each, some 20 s in all", 0)]
+    assert told == [("2 shapes have no influence coefficients yet: derived first, some 5 s each, some 10 s in all", 0)]
     run_study(half, StudyFolder(path=tmp_path / "half"), Workers())
     with (
         xr.open_dataset(folder.results, engine="h5netcdf") as found,
