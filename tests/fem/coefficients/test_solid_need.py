@@ -40,4 +40,5 @@ def test_no_plane_seconds_are_told_of_solid_bodies():
     """Those of the plane were told of solid bodies, which take ten times as long and more."""
     assert derivation_words([PAPER], "solid") == "minutes, told before each"
     (seconds,) = expected_seconds([PAPER])
-    assert f"{10 * round(0.1 * seconds)} s" in derivation_words([PAPER], "plane")
+    words = derivation_words([PAPER], "plane")
+    assert float(words.removeprefix("some ").removesuffix(" s")) == pytest.approx(seconds, abs=2.5)

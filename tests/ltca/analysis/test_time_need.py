@@ -21,4 +21,4 @@ def test_the_time_of_a_solution_is_told_beforehand(tmp_path, capsys, monkeypatch
     monkeypatch.setattr("ltca.analysis.time_need.TOLD_FROM", 0.0)
     assert main(["run", "paper", "--case", "CS-1", "--angles", "0.3", "--no-page", "--out", str(tmp_path / "out")]) == 0
     told = capsys.readouterr().err
-    assert told.splitlines()[0] == "the solution takes some 10 s on one core (1 position, half-space)"
+    assert told.splitlines()[0] == "the solution takes some 5 s on one core (1 position, half-space)"
