@@ -8,15 +8,13 @@ scikit-fem's ``ElementVector(ElementTriP2())``. Forces are those on the full thi
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import reduce
-from operator import add
 from typing import Literal
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
-from skfem import Basis, BilinearForm, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
-from skfem.models.elasticity import lame_parameters
+from skfem import Basis, ElementTriP1, ElementTriP2, ElementVector, FacetBasis, LinearForm, MeshTri2
+from skfem.models.elasticity import lame_parameters, linear_elasticity
 
 from fem.mesh.body_mesh import BodyMesh
 from ltca.arrays import ComplexArray, FloatArray, IntArray
@@ -67,37 +65,19 @@ def assemble_stiffness(
     The thickness is in mm.
     """
     lam, mu = plane_lame_parameters(material, state)
-    curved = curved_elements(body)
+    form, curved = linear_elasticity(thickness * lam, thickness * mu), curved_elements(body)
     # Curved elements cost twice as many points; they lie along the boundary only.
-    bases = [
-        Basis(body.mesh, _scalar_element(body), elements=elements, intorder=order)
+    parts = [
+        form.assemble(Basis(body.mesh, ElementVector(_scalar_element(body)), elements=elements, intorder=order))
         for elements, order in (
             (np.flatnonzero(~curved), STRAIGHT_QUADRATURE),
             (np.flatnonzero(curved), CURVED_QUADRATURE),
         )
         if elements.size
     ]
-    # Products of derivatives along x and y, each a matrix of the nodes with the same places of entries.
-    along, across, mixed = (_derivative_products(bases, *axes) for axes in ((0, 0), (1, 1), (0, 1)))
-    turned = sp.csr_matrix(mixed.T)
-    turned.sort_indices()
-    blocks = np.empty((along.nnz, 2, 2))
-    blocks[:, 0, 0] = (lam + 2.0 * mu) * along.data + mu * across.data
-    blocks[:, 1, 1] = (lam + 2.0 * mu) * across.data + mu * along.data
-    blocks[:, 0, 1] = lam * turned.data + mu * mixed.data
-    blocks[:, 1, 0] = lam * mixed.data + mu * turned.data
-    found = sp.bsr_matrix((thickness * blocks, along.indices, along.indptr), shape=(body.unknowns,) * 2).tocsc()
+    found = sp.csc_matrix(sum(parts[1:], parts[0]))
     found.sort_indices()
     return found
-
-
-def _derivative_products(bases: list[Basis], of_trial: int, of_test: int) -> sp.csr_matrix:
-    """Return the matrix of ∫ ∂u/∂x_i ∂v/∂x_j dA of scalars, zeros among its entries."""
-    form = BilinearForm(lambda u, v, w: u.grad[of_trial] * v.grad[of_test])
-    found = reduce(add, (form.coo_data(basis) for basis in bases))
-    matrix = sp.coo_matrix((found.data, tuple(found.indices)), shape=found.shape).tocsr()
-    matrix.sort_indices()
-    return matrix
 
 
 def first_order_space(body: BodyMesh) -> sp.csc_matrix:

@@ -96,8 +96,7 @@ class ContactSystem:
         self.one = replace(self.coordinates, discs=1)
         self.cage_speed = place.cage_speed
         self.plain = not self.deforms and self.components == 1 and model.friction is None
-        alike = all(type(laws) is ContactLaws for laws in self.laws)
-        self.every_law = (PlaneLaws, SlicedLaws)[self.coordinates.leans](self.laws, self.of_kind, alike=alike)
+        self.contact_laws = (PlaneLaws, SlicedLaws)[self.coordinates.leans](self.laws, self.of_kind)
 
     @property
     def half(self) -> FloatArray:
@@ -369,7 +368,7 @@ class Linearised:
 
     def _carry(self, state: State) -> None:
         """Loads of all contacts at their deformations, and their derivatives."""
-        laws = self.system.every_law
+        laws = self.system.contact_laws
         self.load, self.stiffness, self.law_left, self.sliced = laws.carried(
             self.discs, self.deformation, self.half, state.near, roughly=self.roughly
         )

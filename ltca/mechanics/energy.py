@@ -59,7 +59,7 @@ def _of_disc(at: Linearised, disc: int) -> StoredEnergy:
 
     def of_kind(number: int, radius: FloatArray) -> FloatArray:
         near = nears[number] if nears else None
-        return system.every_law.energy(laws.laws[number], at.after[:, :, kinds[number]], at.half, radius, near)
+        return system.contact_laws.energy(laws.laws[number], at.after[:, :, kinds[number]], at.half, radius, near)
 
     energy = sum((of_kind(number, radius).sum(axis=-1) for number, radius in enumerate(radii)), np.zeros(rows))
     low, high = (of_kind(0, pin_radius * (1.0 + side)) for side in (-RADIUS_STEP, RADIUS_STEP))

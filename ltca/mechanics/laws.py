@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ltca.arrays import FloatArray
 from ltca.compliance import sliced
+from ltca.compliance.response import ContactLaws
 from ltca.laws.line_contact import LineContactLaw
 
 if TYPE_CHECKING:
@@ -28,9 +29,10 @@ class Carried(NamedTuple):
 class PlaneLaws:
     """Laws of the contacts of all discs in the plane: wheel pins, rollers in bores, shaft pins, rollers on races."""
 
-    def __init__(self, laws: Sequence[Any], kinds: Sequence[Sequence[slice]], *, alike: bool) -> None:
+    def __init__(self, laws: Sequence[Any], kinds: Sequence[Sequence[slice]]) -> None:
         self.laws, self.kinds = laws, kinds
         self.radii = _radii(laws, kinds)
+        alike = all(type(each) is ContactLaws for each in laws)
         self.groups = _law_groups(laws, kinds) if alike else []
 
     def carried(
@@ -63,7 +65,7 @@ class PlaneLaws:
 class SlicedLaws:
     """The same in slices: what each slice carries is balanced inside its contact."""
 
-    def __init__(self, laws: Sequence[Any], kinds: Sequence[Sequence[slice]], *, alike: bool) -> None:
+    def __init__(self, laws: Sequence[Any], kinds: Sequence[Sequence[slice]]) -> None:
         self.laws, self.kinds = laws, kinds
 
     def carried(
